@@ -1,0 +1,245 @@
+//! The catalogue: every primitive, map, modifier and join, each written once over [`Real`].
+//!
+//! An entry is a unit struct with one trait implementation (its formula, its parameters, its bounds, and a plain `f64`
+//! membership test that the proofs hold it against) and one line in [`list`]. The scene language, the reference listing,
+//! the evaluators, the shaders and the tests all iterate that list.
+//!
+//! 2D shapes are fields that ignore `z`: they become solids by `extrude` and `revolve`.
+
+use crate::bounds::{Aabb, Exactness};
+use crate::number::{Args, Real, Vec3};
+
+pub mod list;
+pub mod solid;
+
+/// What a parameter measures. Angles are radians here and degrees in scene files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// Scene units.
+    Length,
+    /// Radians.
+    Angle,
+    /// A plain number.
+    Ratio,
+    /// A whole number.
+    Count,
+    /// Radians per scene unit, cycles per scene unit and the like.
+    Rate,
+    /// A direction; its length does not matter.
+    Direction,
+}
+
+/// How many numbers a parameter has and how they lie in the parameter array.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// One number.
+    Number,
+    /// Two numbers.
+    Vec2,
+    /// Three numbers.
+    Vec3,
+    /// A list of items of this many numbers: the count, then the items. Always the last parameter.
+    List(usize),
+}
+
+impl Kind {
+    /// Numbers it takes in the parameter array; a list takes at least its count.
+    pub const fn len(self) -> usize {
+        match self {
+            Kind::Number | Kind::List(_) => 1,
+            Kind::Vec2 => 2,
+            Kind::Vec3 => 3,
+        }
+    }
+}
+
+/// One parameter of an entry.
+#[derive(Clone, Copy, Debug)]
+pub struct Param {
+    /// Name in the scene language.
+    pub name: &'static str,
+    /// Shape in the parameter array.
+    pub kind: Kind,
+    /// What it measures.
+    pub unit: Unit,
+    /// Default value (for a list: its items, without the count). Empty: the parameter must be given.
+    pub default: &'static [f64],
+    /// Smallest value allowed, for every component.
+    pub min: f64,
+    /// Largest value allowed, for every component.
+    pub max: f64,
+    /// One line.
+    pub doc: &'static str,
+}
+
+/// A parameter of one number.
+pub const fn number(name: &'static str, unit: Unit, default: &'static [f64; 1], min: f64, max: f64, doc: &'static str) -> Param {
+    Param { name, kind: Kind::Number, unit, default, min, max, doc }
+}
+
+/// A parameter of two numbers.
+pub const fn vec2(name: &'static str, unit: Unit, default: &'static [f64; 2], min: f64, max: f64, doc: &'static str) -> Param {
+    Param { name, kind: Kind::Vec2, unit, default, min, max, doc }
+}
+
+/// A parameter of three numbers.
+pub const fn vec3(name: &'static str, unit: Unit, default: &'static [f64; 3], min: f64, max: f64, doc: &'static str) -> Param {
+    Param { name, kind: Kind::Vec3, unit, default, min, max, doc }
+}
+
+/// A list of items of `width` numbers.
+pub const fn list(name: &'static str, unit: Unit, width: usize, default: &'static [f64], doc: &'static str) -> Param {
+    Param { name, kind: Kind::List(width), unit, default, min: -LARGE, max: LARGE, doc }
+}
+
+/// The largest length a scene may state, in scene units.
+pub const LARGE: f64 = 1e6;
+/// The smallest length of a thing that must have one.
+pub const SMALL: f64 = 1e-6;
+
+/// Whether a field lives in the plane or in space.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dimension {
+    /// Ignores `z`.
+    Two,
+    /// Uses all coordinates.
+    Three,
+    /// Takes either and gives the same.
+    Any,
+}
+
+/// What an entry says of itself.
+#[derive(Clone, Copy, Debug)]
+pub struct Info {
+    /// Name in the scene language (snake_case).
+    pub name: &'static str,
+    /// One line.
+    pub doc: &'static str,
+    /// Author, year, equation, where the formula is not common knowledge.
+    pub source: &'static str,
+    /// The section of the reference it stands in.
+    pub group: &'static str,
+    /// The plane, space, or either.
+    pub dimension: Dimension,
+    /// Parameters in the order in which the array holds them.
+    pub params: &'static [Param],
+}
+
+impl Info {
+    /// The defaults as the parameter array.
+    pub fn defaults(&self) -> Vec<f64> {
+        let mut out = Vec::new();
+        for p in self.params {
+            if let Kind::List(width) = p.kind {
+                out.push((p.default.len() / width) as f64);
+            }
+            out.extend_from_slice(p.default);
+        }
+        out
+    }
+}
+
+/// A shape: a point in, a distance out.
+pub trait Primitive: 'static {
+    /// Name, parameters, words.
+    const INFO: Info;
+    /// How true the distance is.
+    const EXACTNESS: Exactness;
+    /// More parameter sets that the proofs run at, beside the defaults.
+    const SAMPLES: &'static [&'static [f64]] = &[];
+    /// The formula.
+    fn distance<R: Real>(p: Vec3<R>, a: Args<'_, R>) -> R;
+    /// A box that holds the solid; infinite along `z` for a 2D shape.
+    fn bounds(a: &[f64]) -> Aabb;
+    /// Largest slope of [`Self::distance`] anywhere; the compiler divides by it.
+    fn lipschitz(_a: &[f64]) -> f64 {
+        1.0
+    }
+    /// Whether `p` lies in the solid: plain `f64`, written from the shape's geometry and not from [`Self::distance`], so
+    /// that the proofs have a second opinion on the sign.
+    fn contains(a: &[f64], p: [f64; 3]) -> bool;
+    /// Relations between parameters that ranges cannot state; the message says what is allowed.
+    fn check(_a: &[f64]) -> Result<(), String> {
+        Ok(())
+    }
+}
+
+/// How much longer a map can make a short way, which is what the field behind it grows steeper by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stretch {
+    /// At most this anywhere.
+    Everywhere(f64),
+    /// At most this inside the box, which must hold the result; outside, the compiler continues the field from the box
+    /// by `hypot(distance to the box, value at its nearest point)`, which never overestimates.
+    Within(Aabb, f64),
+}
+
+/// A map of space: the shape at `map(p)` is seen at `p`.
+pub trait Map: 'static {
+    /// Name, parameters, words.
+    const INFO: Info;
+    /// Whether an exact distance stays exact (rigid motions only).
+    const RIGID: bool = false;
+    /// More parameter sets that the proofs run at, beside the defaults.
+    const SAMPLES: &'static [&'static [f64]] = &[];
+    /// The map, from the place that is seen to the place in the shape.
+    fn map<R: Real>(p: Vec3<R>, a: Args<'_, R>) -> Vec3<R>;
+    /// Largest singular value of the map's derivative. `bounds` is what [`Self::bounds`] gave. The message says why there
+    /// is none and what to do (for instance: bound the shape first).
+    fn stretch(a: &[f64], bounds: &Aabb) -> Result<Stretch, String>;
+    /// A box that holds the result, from the box of the shape.
+    fn bounds(a: &[f64], shape: &Aabb) -> Aabb;
+    /// Relations between parameters that ranges cannot state.
+    fn check(_a: &[f64]) -> Result<(), String> {
+        Ok(())
+    }
+}
+
+/// A change of one field's value (rounding, shells, displacement, extrusion).
+pub trait Modify: 'static {
+    /// Name, parameters, words. [`Dimension::Two`] takes a 2D field and makes a solid; otherwise the dimension stays.
+    const INFO: Info;
+    /// More parameter sets that the proofs run at, beside the defaults.
+    const SAMPLES: &'static [&'static [f64]] = &[];
+    /// The new value from the field's value `d` at `p`.
+    fn modify<R: Real>(d: R, p: Vec3<R>, a: Args<'_, R>) -> R;
+    /// Slope of the result, from the slope of the field.
+    fn lipschitz(a: &[f64], slope: f64) -> f64;
+    /// A box that holds the result, from the box of the field.
+    fn bounds(a: &[f64], shape: &Aabb) -> Aabb;
+    /// How true the result is.
+    fn exactness(shape: Exactness) -> Exactness;
+    /// Relations between parameters that ranges cannot state.
+    fn check(_a: &[f64]) -> Result<(), String> {
+        Ok(())
+    }
+}
+
+/// Two fields made one.
+pub trait Join: 'static {
+    /// Name, parameters, words.
+    const INFO: Info;
+    /// Whether only the signs of the operands matter for the shape of the result (sharp joins). The compiler then divides
+    /// each operand by its own slope; otherwise the values are lengths, are kept, and the result is divided.
+    const SHARP: bool;
+    /// More parameter sets that the proofs run at, beside the defaults.
+    const SAMPLES: &'static [&'static [f64]] = &[];
+    /// The new value from the two.
+    fn join<R: Real>(x: R, y: R, a: Args<'_, R>) -> R;
+    /// Slope of the result, from the slopes of the two, over all directions in which both may change.
+    fn lipschitz(a: &[f64], x: f64, y: f64) -> f64;
+    /// A box that holds the result.
+    fn bounds(a: &[f64], x: &Aabb, y: &Aabb) -> Aabb;
+    /// How true the result is.
+    fn exactness(x: Exactness, y: Exactness) -> Exactness;
+    /// How far from both surfaces the join may move the surface (0 for sharp joins).
+    fn reach(_a: &[f64]) -> f64 {
+        0.0
+    }
+    /// Whether a point is in the result if it is in (`x`, `y`), for points farther than [`Self::reach`] from both surfaces.
+    fn contains(x: bool, y: bool) -> bool;
+    /// Relations between parameters that ranges cannot state.
+    fn check(_a: &[f64]) -> Result<(), String> {
+        Ok(())
+    }
+}

@@ -1,0 +1,5 @@
+//! Signed distance fields: numbers, catalogue, bounds, programs, evaluators.
+
+pub mod bounds;
+pub mod catalogue;
+pub mod number;
