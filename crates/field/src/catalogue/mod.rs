@@ -7,9 +7,13 @@
 //! 2D shapes are fields that ignore `z`: they become solids by `extrude` and `revolve`.
 
 use crate::bounds::{Aabb, Exactness};
-use crate::number::{Args, Real, Vec3};
+use crate::number::{Args, Real, Vec3, length2};
 
+pub mod join;
+pub mod join_smooth;
 pub mod list;
+pub mod map;
+pub mod modify;
 pub mod solid;
 
 /// What a parameter measures. Angles are radians here and degrees in scene files.
