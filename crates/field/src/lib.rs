@@ -2,4 +2,8 @@
 
 pub mod bounds;
 pub mod catalogue;
+pub mod field;
+pub mod formula;
 pub mod number;
+pub mod placement;
+pub mod repetition;

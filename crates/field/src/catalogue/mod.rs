@@ -11,6 +11,7 @@ use crate::number::{Args, Real, Vec3, length2};
 
 pub mod join;
 pub mod join_smooth;
+pub mod entries;
 pub mod list;
 pub mod map;
 pub mod modify;

@@ -1,0 +1,459 @@
+//! The field tree: what a scene builds and a [`Program`](crate::program::Program) is compiled from.
+//!
+//! A [`Field`] is cheap to clone, and a clone is the same node: a shape used in two places of a tree at the same place in
+//! space is evaluated once. Every node is checked when it is made, and knows its box, its exactness and its slope.
+
+use crate::bounds::{Aabb, Exactness};
+use crate::catalogue::entries::{JoinEntry, MapEntry, ModifyEntry, PrimitiveEntry};
+use crate::catalogue::{Dimension, Info, Kind, Stretch};
+use crate::formula::Formula;
+use crate::placement::Placement;
+use crate::repetition::{Polar, Repetition};
+use std::sync::Arc;
+
+/// Deepest tree that can be built; deeper ones are refused before a recursion could overflow the stack.
+pub const MAX_DEPTH: u32 = 512;
+
+/// A node of a field tree.
+#[derive(Clone, Debug)]
+pub struct Field(Arc<(Node, Facts)>);
+
+/// What a node is.
+#[derive(Clone, Debug)]
+pub enum Node {
+    /// A shape of the catalogue.
+    Primitive {
+        /// Which.
+        entry: &'static PrimitiveEntry,
+        /// Its parameter array.
+        params: Vec<f64>,
+    },
+    /// A map of the catalogue.
+    Map {
+        /// Which.
+        entry: &'static MapEntry,
+        /// Its parameter array.
+        params: Vec<f64>,
+        /// What is mapped.
+        shape: Field,
+    },
+    /// A modifier of the catalogue.
+    Modify {
+        /// Which.
+        entry: &'static ModifyEntry,
+        /// Its parameter array.
+        params: Vec<f64>,
+        /// What is changed.
+        shape: Field,
+    },
+    /// A join of the catalogue, over two or more fields from left to right.
+    Join {
+        /// Which.
+        entry: &'static JoinEntry,
+        /// Its parameter array.
+        params: Vec<f64>,
+        /// What is joined.
+        shapes: Vec<Field>,
+    },
+    /// A rigid motion with a uniform scale.
+    Place {
+        /// Where.
+        placement: Placement,
+        /// What.
+        shape: Field,
+    },
+    /// Copies on a grid.
+    Repeat {
+        /// How.
+        repetition: Repetition,
+        /// What.
+        shape: Field,
+    },
+    /// Copies around the y axis.
+    Polar {
+        /// How.
+        polar: Polar,
+        /// What.
+        shape: Field,
+    },
+    /// A free-form formula over x, y and z.
+    Formula(Arc<Formula>),
+    /// A field whose surface has a material of its own.
+    Paint {
+        /// The scene's number for the material.
+        material: u16,
+        /// What.
+        shape: Field,
+    },
+}
+
+/// What a node knows about itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facts {
+    /// A box that holds the solid.
+    pub bounds: Aabb,
+    /// How true the distance is, once divided by the slope.
+    pub exactness: Exactness,
+    /// Lipschitz constant of the value before any division.
+    pub slope: f64,
+    /// Whether the value may need a division: decided by the kind of node and not by its numbers alone, so that a slider
+    /// does not change a program's structure.
+    pub steep: bool,
+    /// The plane or space.
+    pub dimension: Dimension,
+    /// Nodes from here to the farthest leaf.
+    pub depth: u32,
+    /// Nodes of the tree, with shared ones counted every time.
+    pub nodes: u64,
+}
+
+/// Why a node cannot be made. Every message says what was given and what is allowed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FieldError {
+    /// A number outside its range.
+    #[error("{entry}: {param} is {value}, allowed is {min} to {max}")]
+    Range {
+        /// Entry.
+        entry: &'static str,
+        /// Parameter.
+        param: &'static str,
+        /// What was given.
+        value: f64,
+        /// Smallest allowed.
+        min: f64,
+        /// Largest allowed.
+        max: f64,
+    },
+    /// A parameter array of the wrong length, or a list whose count does not match.
+    #[error("{entry}: {given} numbers given, its parameters take {wanted}")]
+    Count {
+        /// Entry.
+        entry: &'static str,
+        /// Numbers given.
+        given: usize,
+        /// Numbers wanted.
+        wanted: usize,
+    },
+    /// Parameters that do not fit each other, or a shape that does not fit the operation.
+    #[error("{entry}: {reason}")]
+    Unfit {
+        /// Entry.
+        entry: &'static str,
+        /// Why, and what is allowed.
+        reason: String,
+    },
+    /// A 2D field where a solid is needed, or the other way round.
+    #[error("{entry} needs a {wanted} shape, this one is {given}: {hint}")]
+    Dimension {
+        /// Entry.
+        entry: &'static str,
+        /// What is needed.
+        wanted: &'static str,
+        /// What was given.
+        given: &'static str,
+        /// How to mend it.
+        hint: &'static str,
+    },
+    /// A tree deeper than [`MAX_DEPTH`].
+    #[error("the field is nested {MAX_DEPTH} operations deep, which is the limit; join many shapes with one union([...])")]
+    Deep,
+    /// A join of no fields.
+    #[error("{entry} needs at least one field")]
+    Empty {
+        /// Entry.
+        entry: &'static str,
+    },
+}
+
+impl Field {
+    /// A shape of the catalogue, from its whole parameter array (lengths in scene units, angles in radians).
+    ///
+    /// # Errors
+    /// Numbers out of range or that do not fit each other.
+    pub fn primitive(entry: &'static PrimitiveEntry, params: Vec<f64>) -> Result<Field, FieldError> {
+        check_params(&entry.info, &params, entry.check)?;
+        let slope = (entry.lipschitz)(&params);
+        let facts = Facts {
+            bounds: (entry.bounds)(&params),
+            exactness: entry.exactness,
+            slope,
+            steep: slope != 1.0 || (entry.lipschitz)(&entry.info.defaults()) != 1.0,
+            dimension: entry.info.dimension,
+            depth: 1,
+            nodes: 1,
+        };
+        Ok(Field::new(Node::Primitive { entry, params }, facts))
+    }
+
+    /// This field seen through a map of the catalogue.
+    ///
+    /// # Errors
+    /// Numbers out of range; a 2D shape where a solid is needed; a map that is only bounded over a bounded shape.
+    pub fn map(&self, entry: &'static MapEntry, params: Vec<f64>) -> Result<Field, FieldError> {
+        check_params(&entry.info, &params, entry.check)?;
+        let child = self.facts();
+        let dimension = through(&entry.info, child.dimension)?;
+        let bounds = (entry.bounds)(&params, &child.bounds);
+        let unfit = |reason| FieldError::Unfit { entry: entry.info.name, reason };
+        let stretch = match (entry.stretch)(&params, &bounds).map_err(unfit)? {
+            Stretch::Everywhere(l) | Stretch::Within(_, l) => l,
+        };
+        let facts = Facts {
+            bounds,
+            exactness: if entry.rigid { child.exactness } else { child.exactness.max(Exactness::Bound) },
+            slope: child.slope * stretch,
+            steep: child.steep || !entry.rigid,
+            dimension,
+            ..child.above()?
+        };
+        Ok(Field::new(Node::Map { entry, params, shape: self.clone() }, facts))
+    }
+
+    /// This field changed by a modifier of the catalogue.
+    ///
+    /// # Errors
+    /// Numbers out of range; a solid where a 2D shape is needed.
+    pub fn modify(&self, entry: &'static ModifyEntry, params: Vec<f64>) -> Result<Field, FieldError> {
+        check_params(&entry.info, &params, entry.check)?;
+        let child = self.facts();
+        let dimension = through(&entry.info, child.dimension)?;
+        let slope = (entry.lipschitz)(&params, child.slope);
+        let facts = Facts {
+            bounds: (entry.bounds)(&params, &child.bounds),
+            exactness: (entry.exactness)(child.exactness),
+            slope,
+            steep: child.steep || slope != 1.0 || (entry.lipschitz)(&entry.info.defaults(), 1.0) != 1.0,
+            dimension,
+            ..child.above()?
+        };
+        Ok(Field::new(Node::Modify { entry, params, shape: self.clone() }, facts))
+    }
+
+    /// Two or more fields joined from left to right. One field alone is given back as it is.
+    ///
+    /// # Errors
+    /// Numbers out of range, no fields, or fields of the plane mixed with solids.
+    pub fn join(entry: &'static JoinEntry, params: Vec<f64>, shapes: Vec<Field>) -> Result<Field, FieldError> {
+        check_params(&entry.info, &params, entry.check)?;
+        let mut rest = shapes.iter();
+        let Some(first) = rest.next() else {
+            return Err(FieldError::Empty { entry: entry.info.name });
+        };
+        if shapes.len() == 1 {
+            return Ok(first.clone());
+        }
+        let mut facts = first.facts().above()?;
+        for shape in rest {
+            let f = shape.facts();
+            if facts.dimension != f.dimension && facts.dimension != Dimension::Any && f.dimension != Dimension::Any {
+                return Err(FieldError::Dimension {
+                    entry: entry.info.name,
+                    wanted: spoken(facts.dimension),
+                    given: spoken(f.dimension),
+                    hint: "make solids of plane shapes with extrude(...) or revolve(...) first",
+                });
+            }
+            let (x, y) = if entry.sharp { (1.0, 1.0) } else { (facts.slope, f.slope) };
+            let slope = (entry.lipschitz)(&params, x, y);
+            facts = Facts {
+                bounds: (entry.bounds)(&params, &facts.bounds, &f.bounds),
+                exactness: (entry.exactness)(facts.exactness, f.exactness),
+                slope,
+                steep: !entry.sharp
+                    && (facts.steep || f.steep || (entry.lipschitz)(&entry.info.defaults(), 1.0, 1.0) != 1.0),
+                dimension: if facts.dimension == Dimension::Any { f.dimension } else { facts.dimension },
+                depth: facts.depth.max(f.above()?.depth),
+                nodes: facts.nodes.saturating_add(f.nodes),
+            };
+        }
+        Ok(Field::new(Node::Join { entry, params, shapes }, facts))
+    }
+
+    /// This field moved, turned or scaled. Placements that follow each other become one.
+    ///
+    /// # Errors
+    /// A tree too deep, a placement that is not finite, a scale that is not positive.
+    pub fn place(&self, placement: Placement) -> Result<Field, FieldError> {
+        let numbers = placement.rotation.iter().flatten().chain(&placement.offset);
+        if !numbers.chain([&placement.scale]).all(|x| x.is_finite()) || placement.scale <= 0.0 {
+            let reason = "the motion must be finite and its scale above 0".to_string();
+            return Err(FieldError::Unfit { entry: "place", reason });
+        }
+        let (placement, shape) = match self.node() {
+            Node::Place { placement: inner, shape } => (placement.after(inner), shape),
+            _ => (placement, self),
+        };
+        let child = shape.facts();
+        let facts = Facts { bounds: placement.bounds(&child.bounds), ..child.above()? };
+        Ok(Field::new(Node::Place { placement, shape: shape.clone() }, facts))
+    }
+
+    /// Copies of this field on a grid.
+    ///
+    /// # Errors
+    /// A spacing that is too small for the shape, or a shape without bounds along a repeated axis.
+    pub fn repeat(&self, repetition: Repetition) -> Result<Field, FieldError> {
+        let child = self.facts();
+        repetition.check(&child.bounds).map_err(|reason| FieldError::Unfit { entry: "repeat", reason })?;
+        let facts = Facts {
+            bounds: repetition.bounds(&child.bounds),
+            exactness: child.exactness.max(Exactness::Bound),
+            slope: 1.0,
+            steep: false,
+            ..child.above()?
+        };
+        Ok(Field::new(Node::Repeat { repetition, shape: self.clone() }, facts))
+    }
+
+    /// Copies of this field around the y axis.
+    ///
+    /// # Errors
+    /// Too many copies for a shape that is wider than its sector.
+    pub fn polar(&self, polar: Polar) -> Result<Field, FieldError> {
+        let child = self.facts();
+        polar.check(&child.bounds).map_err(|reason| FieldError::Unfit { entry: "polar", reason })?;
+        let facts = Facts {
+            bounds: polar.bounds(&child.bounds),
+            exactness: child.exactness.max(Exactness::Bound),
+            slope: 1.0,
+            steep: false,
+            ..child.above()?
+        };
+        Ok(Field::new(Node::Polar { polar, shape: self.clone() }, facts))
+    }
+
+    /// A free-form formula, which brings its own proof of its slope.
+    pub fn formula(formula: Arc<Formula>) -> Field {
+        let facts = Facts {
+            bounds: formula.bounds(),
+            exactness: if formula.is_proven() { Exactness::Bound } else { Exactness::Estimate },
+            slope: formula.slope(),
+            steep: true,
+            dimension: Dimension::Three,
+            depth: 1,
+            nodes: 1,
+        };
+        Field::new(Node::Formula(formula), facts)
+    }
+
+    /// This field with a material of its own. `material` is the scene's number for it.
+    ///
+    /// # Errors
+    /// A tree too deep.
+    pub fn paint(&self, material: u16) -> Result<Field, FieldError> {
+        let facts = self.facts().above()?;
+        Ok(Field::new(Node::Paint { material, shape: self.clone() }, facts))
+    }
+
+    /// What the node is.
+    pub fn node(&self) -> &Node {
+        &self.0.0
+    }
+
+    /// What the node knows about itself.
+    pub fn facts(&self) -> &Facts {
+        &self.0.1
+    }
+
+    /// The nodes right below this one.
+    pub fn children(&self) -> &[Field] {
+        match self.node() {
+            Node::Primitive { .. } | Node::Formula(_) => &[],
+            Node::Join { shapes, .. } => shapes,
+            Node::Map { shape, .. }
+            | Node::Modify { shape, .. }
+            | Node::Place { shape, .. }
+            | Node::Repeat { shape, .. }
+            | Node::Polar { shape, .. }
+            | Node::Paint { shape, .. } => std::slice::from_ref(shape),
+        }
+    }
+
+    /// The node's identity: equal for clones of one node.
+    pub fn key(&self) -> usize {
+        Arc::as_ptr(&self.0) as *const u8 as usize
+    }
+
+    fn new(node: Node, facts: Facts) -> Field {
+        Field(Arc::new((node, facts)))
+    }
+}
+
+impl Facts {
+    /// The facts of a node over this one, as far as they are the same.
+    fn above(&self) -> Result<Facts, FieldError> {
+        if self.depth >= MAX_DEPTH {
+            return Err(FieldError::Deep);
+        }
+        Ok(Facts { depth: self.depth + 1, nodes: self.nodes.saturating_add(1), ..*self })
+    }
+}
+
+fn spoken(dimension: Dimension) -> &'static str {
+    match dimension {
+        Dimension::Two => "2D",
+        Dimension::Three => "3D",
+        Dimension::Any => "2D or 3D",
+    }
+}
+
+/// The dimension behind an operation: one of [`Dimension::Two`] takes a plane shape and gives a solid.
+fn through(info: &Info, shape: Dimension) -> Result<Dimension, FieldError> {
+    match (info.dimension, shape) {
+        (Dimension::Any, d) => Ok(d),
+        (Dimension::Two, Dimension::Three) => Err(FieldError::Dimension {
+            entry: info.name,
+            wanted: "2D",
+            given: "3D",
+            hint: "it makes a solid of a plane shape such as circle() or polygon(...)",
+        }),
+        (Dimension::Three, Dimension::Two) => Err(FieldError::Dimension {
+            entry: info.name,
+            wanted: "3D",
+            given: "2D",
+            hint: "make a solid of it with extrude(...) or revolve(...) first",
+        }),
+        _ => Ok(Dimension::Three),
+    }
+}
+
+/// Whether a parameter array fits an entry: its length, its ranges, its relations.
+fn check_params(info: &Info, params: &[f64], relations: fn(&[f64]) -> Result<(), String>) -> Result<(), FieldError> {
+    let mut at = 0;
+    for p in info.params {
+        let values = match p.kind {
+            Kind::List(width) => {
+                let rest = params.get(at..).unwrap_or_default();
+                let (Some(&count), items) = (rest.first(), rest.get(1..).unwrap_or_default()) else {
+                    return Err(FieldError::Count { entry: info.name, given: params.len(), wanted: at + 1 });
+                };
+                if count < 0.0 || count.fract() != 0.0 || items.len() != count as usize * width {
+                    let wanted = at + 1 + count.max(0.0) as usize * width;
+                    return Err(FieldError::Count { entry: info.name, given: params.len(), wanted });
+                }
+                at += 1;
+                at += items.len();
+                items
+            }
+            kind => {
+                let Some(values) = params.get(at..at + kind.len()) else {
+                    let wanted = info.params.iter().map(|p| p.kind.len()).sum();
+                    return Err(FieldError::Count { entry: info.name, given: params.len(), wanted });
+                };
+                at += kind.len();
+                values
+            }
+        };
+        for &value in values {
+            // also refuses NaN
+            if !(p.min <= value && value <= p.max) {
+                let (entry, param) = (info.name, p.name);
+                return Err(FieldError::Range { entry, param, value, min: p.min, max: p.max });
+            }
+        }
+    }
+    if at != params.len() {
+        return Err(FieldError::Count { entry: info.name, given: params.len(), wanted: at });
+    }
+    relations(params).map_err(|reason| FieldError::Unfit { entry: info.name, reason })
+}
