@@ -1,5 +1,5 @@
 //! A proven range: every operation rounds outwards.
-use super::real::*;
+use super::{real::*, vector::*};
 use std::ops::*;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,8 +12,8 @@ impl BitOr for Maybe { type Output = Self; fn bitor(self, o: Self) -> Self { May
 impl Not for Maybe { type Output = Self; fn not(self) -> Self { Maybe { yes: self.no, no: self.yes } } }
 
 pub const WHOLE: Interval = Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
-fn dn(x: f64) -> f64 { if x.is_nan() { f64::NEG_INFINITY } else { x.next_down() } }
-fn up(x: f64) -> f64 { if x.is_nan() { f64::INFINITY } else { x.next_up() } }
+pub(super) fn dn(x: f64) -> f64 { if x.is_nan() { f64::NEG_INFINITY } else { x.next_down() } }
+pub(super) fn up(x: f64) -> f64 { if x.is_nan() { f64::INFINITY } else { x.next_up() } }
 /// 0 * inf = 0: an endpoint that is infinite stands for every large number.
 fn mul(a: f64, b: f64) -> f64 { if a == 0.0 || b == 0.0 { 0.0 } else { a * b } }
 impl Interval {
@@ -82,6 +82,10 @@ impl Real for Interval {
         let c = [self.lo.atan2(x.lo), self.lo.atan2(x.hi), self.hi.atan2(x.lo), self.hi.atan2(x.hi)];
         Interval { lo: dn(dn(c.iter().copied().fold(f64::INFINITY, f64::min))), hi: up(up(c.iter().copied().fold(f64::NEG_INFINITY, f64::max))) }
     }
+    fn jump_slope(m: Maybe, slope: Self) -> Self { if m.yes && m.no { WHOLE } else { slope } }
+    fn proven(self, lo: f32, hi: f32, _at: Vec3<Self>, _slope: f32) -> Self { let c = |x: f64| x.clamp(lo as f64, hi as f64); Interval { lo: c(self.lo), hi: c(self.hi) } }
+    fn fract(self) -> Self { let f = self.floor(); if f.lo < f.hi { Interval { lo: 0.0, hi: 1.0 } } else { self - f } }
+    fn modulo<C: Copy>(self, c: C) -> Self where Self: Ops<C> { modulo(self, self.lit(1.0) * c) }
     fn repeat_while<T: State<Self>>(limit: Self, init: T, live: impl Fn(T) -> Maybe, step: impl Fn(T) -> T) -> T {
         // `done` gathers what may have left; `s` is what may still run.
         let (mut s, mut done): (T, Option<T>) = (init, None);
@@ -108,3 +112,4 @@ fn cosine(x: Interval) -> Interval {
     let has = |off: f64| ((x.hi - off + e) / TAU).floor() >= ((x.lo - off - e) / TAU).ceil();
     Interval { lo: if has(PI) { -1.0 } else { dn(dn(a.min(b))).max(-1.0) }, hi: if has(0.0) { 1.0 } else { up(up(a.max(b))).min(1.0) } }
 }
+fn modulo(x: Interval, c: Interval) -> Interval { let f = (x / c).floor(); if f.lo < f.hi { c.hull(Interval::point(0.0)) } else { x - f * c } }

@@ -1,17 +1,23 @@
 //! The number types that a field formula is evaluated over.
 
+pub mod args;
 pub mod dual;
 pub mod expr;
+pub mod hash;
 pub mod interval;
 pub mod lanes;
 pub mod real;
 pub mod scalar;
 pub mod slope;
+pub mod vector;
 
+pub use args::Args;
 pub use dual::Dual;
 pub use expr::{Expr, Recorder};
+pub use hash::{Hash, hash1, hash2, hash3};
 pub use interval::Interval;
 pub use lanes::Lanes;
-pub use real::{Args, Ends, Masked, Ops, Real, State, Vec2, Vec3, inlined, length2, v2, v3};
+pub use real::{Ends, Masked, Ops, Real, State, Truth, differ, inlined, length2};
 pub use scalar::F64;
 pub use slope::Slope;
+pub use vector::{Vec2, Vec3, v2, v3};

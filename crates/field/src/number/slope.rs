@@ -1,10 +1,15 @@
 //! A range, a range of gradients, and a bound on the gradient's length: for proofs of Lipschitz constants.
-use super::{interval::*, real::*};
+use super::{interval::*, real::*, vector::*};
 use std::ops::*;
 #[derive(Clone, Copy, Debug)]
 pub struct Slope { pub v: Interval, pub d: [Interval; 3], pub l: f64 }
 fn len(d: [Interval; 3]) -> f64 { let s: f64 = d.iter().map(|x| x.mag() * x.mag()).sum(); if s.is_nan() { f64::INFINITY } else { s.sqrt() * (1.0 + 1e-15) } }
 fn times(a: f64, b: f64) -> f64 { if a == 0.0 || b == 0.0 { 0.0 } else { a * b } }
+/// Largest singular value of the derivative J of v: sqrt(largest eigenvalue of J J^T) <= sqrt(largest row sum).
+fn rows<const N: usize>(v: [Slope; N]) -> f64 {
+    let gram = |i: usize, j: usize| if i == j { v[i].l * v[i].l } else { let s = (0..3).fold(Interval::point(0.0), |s, k| s + v[i].d[k] * v[j].d[k]); s.mag().min(times(v[i].l, v[j].l)) };
+    (0..N).map(|i| (0..N).map(|j| gram(i, j)).sum::<f64>()).fold(0.0, f64::max).sqrt() * (1.0 + 1e-14)
+}
 impl Slope {
     fn new(v: Interval, d: [Interval; 3], l: f64) -> Self { Slope { v, d, l: l.min(len(d)) } }
     fn chain(self, v: Interval, s: Interval) -> Self { Slope::new(v, self.d.map(|x| x * s), times(self.l, s.mag())) }
@@ -51,6 +56,13 @@ impl Real for Slope {
     fn like(self, s: Interval) -> Self { Slope::flat(s) }
     fn lit(self, c: f32) -> Self { Slope::flat(c.into()) }
     fn select(m: Maybe, a: Self, b: Self) -> Self { Slope::pick(m, Interval::select(m, a.v, b.v), a, b) }
+    fn choose(m: Maybe, a: Self, b: Self) -> Self { let mut s = Slope::select(m, a, b); if m.yes && m.no { s.d = [WHOLE; 3]; s.l = f64::INFINITY; } s }
+    fn fract(self) -> Self { let mut s = self - self.floor(); s.v = self.v.fract(); s }
+    fn proven(self, lo: f32, hi: f32, at: Vec3<Self>, slope: f32) -> Self {
+        let axis = |k: usize| times(slope as f64, len([at.x.d[k], at.y.d[k], at.z.d[k]]));
+        let d = [0, 1, 2].map(|k| { let b = up(axis(k)); Interval { lo: self.d[k].lo.clamp(-b, b), hi: self.d[k].hi.clamp(-b, b) } });
+        Slope::new(self.v.proven(lo, hi, at.map(|c| c.v), slope), d, self.l.min(up(times(slope as f64, rows([at.x, at.y, at.z])))))
+    }
     fn sqrt(self) -> Self { let r = self.v.sqrt(); self.chain(r, Interval::point(0.5) / r) }
     fn abs(self) -> Self { Slope::pick(self.v.below(0.0), self.v.abs(), -self, self) }
     fn floor(self) -> Self { let f = self.v.floor(); self.chain(f, self.v.step_slope(f)) }
@@ -64,9 +76,7 @@ impl Real for Slope {
         let r = Interval::norm(u);
         let mut d = [Interval::point(0.0); 3];
         for i in 0..N { let q = u[i].unit(r); for k in 0..3 { d[k] = d[k] + v[i].d[k] * q; } }
-        // |J^T u| <= sqrt(largest eigenvalue of J J^T) <= sqrt(largest row sum)
-        let gram = (0..N).map(|i| (0..N).map(|j| if i == j { v[i].l * v[i].l } else { let s = (0..3).fold(Interval::point(0.0), |s, k| s + v[i].d[k] * v[j].d[k]); s.mag().min(v[i].l * v[j].l) }).sum::<f64>()).fold(0.0, f64::max);
-        Slope::new(r, d, gram.sqrt())
+        Slope::new(r, d, rows(v))
     }
     fn repeat_while<T: State<Interval>>(limit: Interval, init: T, live: impl Fn(T) -> Maybe, step: impl Fn(T) -> T) -> T { Interval::repeat_while(limit, init, live, step) }
     fn fold<const W: usize, T: State<Interval>>(s: &[f32], at: usize, ends: Ends, init: T, step: impl Fn(T, [Interval; W], [Interval; W]) -> T) -> T { Interval::fold(s, at, ends, init, step) }

@@ -1,0 +1,149 @@
+//! A lattice hash in plain arithmetic: the same bits in `f32`, `f64`, SIMD lanes and on GPUs.
+//!
+//! The permutation polynomial (34 x + 10) x mod 289 of Gustavson and McEwan 2022 (Tiling simplex noise and flow noise in two
+//! and three dimensions; the idea is McEwan, Sheets, Gustavson and Richardson 2012, Efficient computational noise in GLSL):
+//! with x in [0, 289) every product stays below 2^24, so all of it is exact in `f32`, with or without fused multiply-add.
+//! The hash repeats after 289 cells along every axis.
+
+use super::real::Real;
+use super::vector::{Vec2, Vec3, v3};
+
+/// Cells farther from the origin than this count as being there: up to here the arithmetic is exact.
+const REACH: f32 = 4_194_304.0;
+const M: f32 = 289.0;
+
+/// x mod 289, for whole numbers up to [`REACH`].
+///
+/// The quotient of x + 1/2 is at least 0.5 / 289 away from every whole number, which is more than two roundings of it (one
+/// of 1 / 289, one of the product) can make up.
+#[inline(always)]
+fn mod289<R: Real>(x: R) -> R {
+    x - ((x + 0.5) * (1.0 / M)).floor() * M
+}
+
+/// The next whole number in [0, 289), for a whole number in [0, 578).
+#[inline(always)]
+fn permute<R: Real>(x: R) -> R {
+    let x = mod289(x);
+    mod289((x * 34.0 + 10.0) * x)
+}
+
+#[inline(always)]
+fn cell<R: Real>(x: R) -> R {
+    mod289(x.clamp(-REACH, REACH))
+}
+
+/// A whole number in [0, 289) that a lattice cell hashed to.
+#[derive(Clone, Copy, Debug)]
+pub struct Hash<R>(R);
+
+impl<R: Real> Hash<R> {
+    /// The hash of a whole number.
+    #[inline(always)]
+    pub fn of1(x: R) -> Self {
+        Hash(permute(cell(x)))
+    }
+
+    /// The hash of a cell of the plane (whole numbers).
+    #[inline(always)]
+    pub fn of2(c: Vec2<R>) -> Self {
+        Hash(permute(permute(cell(c.x)) + cell(c.y)))
+    }
+
+    /// The hash of a cell of space (whole numbers).
+    #[inline(always)]
+    pub fn of3(c: Vec3<R>) -> Self {
+        Hash(permute(permute(permute(cell(c.x)) + cell(c.y)) + cell(c.z)))
+    }
+
+    /// Another hash of the same cell.
+    #[inline(always)]
+    pub fn next(self) -> Self {
+        Hash(permute(self.0))
+    }
+
+    /// As a number in [0, 1): one of 289 evenly spaced ones.
+    #[inline(always)]
+    pub fn unit(self) -> R {
+        // 58052 / 2^24 is just below 1 / 289, and its product with a whole number below 289 is exact
+        let h = self.0 * (58052.0 / 16_777_216.0);
+        h.proven(0.0, 1.0, v3(self.0, self.0, self.0), f32::INFINITY)
+    }
+}
+
+/// The hash of a whole number, in [0, 1).
+#[inline(always)]
+pub fn hash1<R: Real>(x: R) -> R {
+    Hash::of1(x).unit()
+}
+
+/// The hash of a cell of the plane (whole numbers), in [0, 1).
+#[inline(always)]
+pub fn hash2<R: Real>(c: Vec2<R>) -> R {
+    Hash::of2(c).unit()
+}
+
+/// The hash of a cell of space (whole numbers), in [0, 1).
+#[inline(always)]
+pub fn hash3<R: Real>(c: Vec3<R>) -> R {
+    Hash::of3(c).unit()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::{F64, v2};
+
+    fn one<R: Real>(p: Vec3<R>) -> [R; 4] {
+        let c = p.floor();
+        let h = Hash::of3(c);
+        [
+            hash1(c.x),
+            hash2(v2(c.x, c.y)),
+            hash3(c),
+            h.next().next().unit(),
+        ]
+    }
+
+    #[test]
+    fn same_bits_in_f32_and_f64() {
+        for i in -40_000i32..40_000 {
+            let (x, y, z) = ((i * 101) as f32, (i * 7 - 3) as f32, (-i * 57) as f32);
+            let a = one(v3(x, y, z));
+            let b = one(v3(F64(x.into()), F64(y.into()), F64(z.into())));
+            for k in 0..4 {
+                assert_eq!(f64::from(a[k]), b[k].0, "cell ({x}, {y}, {z})");
+                assert!((0.0..1.0).contains(&a[k]));
+            }
+        }
+    }
+
+    /// Operators take numbers, parameters and literals on the right.
+    fn usage<R: Real>(p: Vec3<R>, a: crate::number::Args<'_, R>) -> R {
+        let c = a.vec3(0);
+        let q = (p - c) * 2.0 * a.get(3) * p.x + v3(1.0, 2.0, 3.0);
+        let r = q.cross(c).cross(p).abs().min(c).max(p).clamp(0.0, a.get(3)) / 3.0;
+        let k = (c * 2.0 - c)
+            .length()
+            .clamp(1.0, a.get(2))
+            .modulo(2.0)
+            .mix(a.get(0), 0.5);
+        r.dot(c)
+            + r.dot(v3(0.5, 0.5, 0.5))
+            + r.x.modulo(a.get(1)).clamp(-1.0, p.y).mix(p.z, k).powi(5)
+            + q.xy().perpendicular().dot(a.vec2(1))
+            + r.normalize().max_component().acos().smoothstep(0.0, 1.0)
+            + k
+    }
+
+    #[test]
+    fn formulas_read_well() {
+        assert!(
+            usage(
+                v3(0.1f32, 0.2, 0.3),
+                crate::number::Args::new(&[1.0, 2.0, 3.0, 4.0][..])
+            )
+            .is_finite()
+        );
+    }
+}
