@@ -78,13 +78,22 @@ pub enum Node {
     },
     /// A free-form formula over x, y and z.
     Formula(Arc<Formula>),
-    /// A field whose surface has a material of its own.
+    /// A field whose surface has a material, or belongs to an object, of its own.
     Paint {
-        /// The scene's number for the material.
-        material: u16,
+        /// Which.
+        paint: Paint,
         /// What.
         shape: Field,
     },
+}
+
+/// What a surface may be marked with; the innermost mark of each kind counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Paint {
+    /// The scene's number for a material.
+    Material(u16),
+    /// The scene's number for an object.
+    Object(u16),
 }
 
 /// What a node knows about itself.
@@ -336,13 +345,13 @@ impl Field {
         Field::new(Node::Formula(formula), facts)
     }
 
-    /// This field with a material of its own. `material` is the scene's number for it.
+    /// This field painted, where no part of it is painted in the same way already.
     ///
     /// # Errors
     /// A tree too deep.
-    pub fn paint(&self, material: u16) -> Result<Field, FieldError> {
+    pub fn paint(&self, paint: Paint) -> Result<Field, FieldError> {
         let facts = self.facts().above()?;
-        Ok(Field::new(Node::Paint { material, shape: self.clone() }, facts))
+        Ok(Field::new(Node::Paint { paint, shape: self.clone() }, facts))
     }
 
     /// What the node is.

@@ -6,4 +6,5 @@ pub mod field;
 pub mod formula;
 pub mod number;
 pub mod placement;
+pub mod program;
 pub mod repetition;

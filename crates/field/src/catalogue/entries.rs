@@ -142,6 +142,12 @@ impl Catalogue {
         self.joins.iter().find(|e| e.info.name == name)
     }
 
+    /// The sharp union, which is always there.
+    pub fn union() -> &'static JoinEntry {
+        static UNION: LazyLock<JoinEntry> = LazyLock::new(|| JoinEntry { code: 0, ..join::<super::join::Union>() });
+        &UNION
+    }
+
     /// What every entry says of itself, kind by kind.
     pub fn infos(&self) -> impl Iterator<Item = &Info> {
         (self.primitives.iter().map(|e| &e.info))

@@ -1,0 +1,103 @@
+//! The film: linear-light planes that a renderer fills. Debug views are planes of the film.
+
+/// One plane of the film.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Plane {
+    /// Linear colour, 3 channels.
+    Colour,
+    /// Share of the pixel that is covered by a surface.
+    Coverage,
+    /// Distance along the ray, scene units; infinite where nothing is hit.
+    Depth,
+    /// Unit normal, 3 channels; zero where nothing is hit.
+    Normal,
+    /// Linear colour of the surface, 3 channels.
+    Albedo,
+    /// Ambient visibility: 1 open, 0 closed.
+    Occlusion,
+    /// Visibility of the lights, weighted by their share: 1 lit, 0 in shadow.
+    Shadow,
+    /// Evaluations of the field that the primary ray took.
+    Steps,
+    /// |f| at the hit.
+    Residual,
+    /// Number of the object plus 1; 0 where nothing is hit.
+    Object,
+}
+
+impl Plane {
+    /// All planes, in the order of the film.
+    pub const ALL: [Plane; 10] = [
+        Plane::Colour,
+        Plane::Coverage,
+        Plane::Depth,
+        Plane::Normal,
+        Plane::Albedo,
+        Plane::Occlusion,
+        Plane::Shadow,
+        Plane::Steps,
+        Plane::Residual,
+        Plane::Object,
+    ];
+
+    /// Name on the command line and of the layer in a file.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Plane::Colour => "colour",
+            Plane::Coverage => "coverage",
+            Plane::Depth => "depth",
+            Plane::Normal => "normal",
+            Plane::Albedo => "albedo",
+            Plane::Occlusion => "occlusion",
+            Plane::Shadow => "shadow",
+            Plane::Steps => "steps",
+            Plane::Residual => "residual",
+            Plane::Object => "object",
+        }
+    }
+
+    /// Numbers a pixel.
+    pub const fn channels(self) -> usize {
+        match self {
+            Plane::Colour | Plane::Normal | Plane::Albedo => 3,
+            _ => 1,
+        }
+    }
+}
+
+/// A picture in the making: `width * height` pixels of every plane, row by row from the top left.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    width: u32,
+    height: u32,
+    planes: Vec<Vec<f32>>,
+}
+
+impl Film {
+    /// A black film. The caller has checked the size against its limits.
+    pub fn new(width: u32, height: u32) -> Film {
+        let pixels = width as usize * height as usize;
+        let planes = Plane::ALL.iter().map(|p| vec![0.0; pixels * p.channels()]).collect();
+        Film { width, height, planes }
+    }
+
+    /// Width in pixels.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Height in pixels.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// The numbers of a plane, channels interleaved.
+    pub fn plane(&self, plane: Plane) -> &[f32] {
+        &self.planes[plane as usize]
+    }
+
+    /// The numbers of a plane, to be written.
+    pub fn plane_mut(&mut self, plane: Plane) -> &mut [f32] {
+        &mut self.planes[plane as usize]
+    }
+}

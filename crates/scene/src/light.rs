@@ -1,0 +1,67 @@
+//! Lights and the sky.
+
+use crate::settings::Shadow;
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// Where light comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Source {
+    /// From infinitely far, along `direction` (normalised, the way the light travels).
+    Directional {
+        /// The way the light travels.
+        direction: Vec3,
+    },
+    /// From a point, with inverse-square falloff relative to a distance of 1.
+    Point {
+        /// Where.
+        position: Vec3,
+    },
+}
+
+/// A light.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Light {
+    /// Where it comes from.
+    #[serde(flatten)]
+    pub source: Source,
+    /// Linear colour times intensity.
+    pub radiance: Vec3,
+    /// Its shadow.
+    pub shadow: Shadow,
+}
+
+/// What rays see that hit nothing, and what lights the scene from everywhere.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Sky {
+    /// Linear colour straight up.
+    pub top: Vec3,
+    /// Linear colour at the horizon.
+    pub horizon: Vec3,
+    /// Linear colour straight down.
+    pub bottom: Vec3,
+    /// Share of the sky's light that reaches an unoccluded surface from everywhere.
+    pub ambient: f32,
+}
+
+impl Default for Sky {
+    fn default() -> Self {
+        Sky {
+            top: Vec3::new(0.36, 0.52, 0.78),
+            horizon: Vec3::new(0.80, 0.86, 0.92),
+            bottom: Vec3::new(0.30, 0.29, 0.28),
+            ambient: 0.45,
+        }
+    }
+}
+
+impl Sky {
+    /// Linear colour seen along a normalised direction: smooth from bottom over horizon to top.
+    pub fn colour(&self, direction: Vec3) -> Vec3 {
+        let y = direction.y;
+        if y >= 0.0 { self.horizon.lerp(self.top, y.sqrt()) } else { self.horizon.lerp(self.bottom, (-y).sqrt()) }
+    }
+}

@@ -1,0 +1,112 @@
+//! Materials: what a surface looks like.
+
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// A colour that may change over space. All colours are linear.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Pattern {
+    /// One colour.
+    Solid {
+        /// The colour.
+        colour: Vec3,
+    },
+    /// Cubes of two colours.
+    Checker {
+        /// The two.
+        colours: [Vec3; 2],
+        /// Side of a cube, scene units.
+        size: f32,
+    },
+    /// Bands of two colours across a direction.
+    Stripes {
+        /// The two.
+        colours: [Vec3; 2],
+        /// Across which way; normalised.
+        direction: Vec3,
+        /// Width of a band, scene units.
+        size: f32,
+    },
+    /// Fractal noise between two colours.
+    Noise {
+        /// The two.
+        colours: [Vec3; 2],
+        /// Size of the largest feature, scene units.
+        size: f32,
+        /// Number of octaves, 1 to 8.
+        octaves: u32,
+    },
+    /// From one colour to another between two points.
+    Gradient {
+        /// The two.
+        colours: [Vec3; 2],
+        /// Where the first one is.
+        from: Vec3,
+        /// Where the second one is.
+        to: Vec3,
+    },
+    /// An image projected along the three axes, blended by the normal.
+    Triplanar {
+        /// The image.
+        image: Arc<Image>,
+        /// Side of a copy of the image, scene units.
+        size: f32,
+        /// How sharply the three projections are told apart; 1 is soft, 8 sharp.
+        sharpness: f32,
+    },
+    /// Colours by the orbit of a fractal at the hit: blended by how near the orbit came to its traps.
+    Orbit {
+        /// Colours of the origin, the x = 0, y = 0 and z = 0 planes.
+        colours: [Vec3; 4],
+    },
+}
+
+/// An image in memory, linear colours, row by row from the top left.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Image {
+    /// The file it came from, relative to the scene's folder.
+    pub path: String,
+    /// Width in pixels.
+    #[serde(skip)]
+    pub width: u32,
+    /// Height in pixels.
+    #[serde(skip)]
+    pub height: u32,
+    /// Linear colours.
+    #[serde(skip)]
+    pub pixels: Vec<Vec3>,
+}
+
+/// What a surface looks like.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Material {
+    /// Colour.
+    pub pattern: Pattern,
+    /// Strength of the highlight of the Phong model.
+    pub specular: f32,
+    /// Exponent of the highlight of the Phong model.
+    pub shininess: f32,
+    /// 0 plastic or stone, 1 metal: highlights and reflections of the sky take the surface's colour.
+    pub metallic: f32,
+    /// 0 mirror, 1 chalk: how wide reflections of the sky are.
+    pub roughness: f32,
+    /// Light of its own, linear.
+    pub emission: Vec3,
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Material {
+            pattern: Pattern::Solid { colour: Vec3::new(0.62, 0.60, 0.57) },
+            specular: 0.25,
+            shininess: 40.0,
+            metallic: 0.0,
+            roughness: 0.5,
+            emission: Vec3::ZERO,
+        }
+    }
+}

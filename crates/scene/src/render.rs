@@ -1,0 +1,122 @@
+//! What a renderer is: the CPU's and the GPU's implement the same trait.
+
+use crate::film::Film;
+use crate::scene::Scene;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// A renderer.
+pub trait Renderer {
+    /// Renders the scene at the size and with the methods that its settings state.
+    ///
+    /// # Errors
+    /// See [`RenderError`].
+    fn render(&self, scene: &Scene, observer: &dyn Observer) -> Result<Frame, RenderError>;
+}
+
+/// A finished picture and what it took.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// The planes.
+    pub film: Film,
+    /// What it took.
+    pub statistics: Statistics,
+}
+
+/// What a picture took.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Statistics {
+    /// Primary rays.
+    pub rays: u64,
+    /// Primary rays that hit a surface.
+    pub hits: u64,
+    /// Evaluations of the field, by stage.
+    pub evaluations: Evaluations,
+    /// Seconds, wall clock.
+    pub seconds: f64,
+    /// Threads.
+    pub threads: usize,
+}
+
+/// Evaluations of the field, by stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Evaluations {
+    /// Cones that whole tiles are marched with.
+    pub prepass: u64,
+    /// Primary rays.
+    pub march: u64,
+    /// Normals.
+    pub normal: u64,
+    /// Ambient occlusion.
+    pub occlusion: u64,
+    /// Shadows.
+    pub shadow: u64,
+    /// Materials.
+    pub material: u64,
+}
+
+impl Evaluations {
+    /// All stages together.
+    pub fn total(&self) -> u64 {
+        self.prepass + self.march + self.normal + self.occlusion + self.shadow + self.material
+    }
+
+    /// Both together.
+    pub fn plus(&self, other: &Self) -> Self {
+        Evaluations {
+            prepass: self.prepass + other.prepass,
+            march: self.march + other.march,
+            normal: self.normal + other.normal,
+            occlusion: self.occlusion + other.occlusion,
+            shadow: self.shadow + other.shadow,
+            material: self.material + other.material,
+        }
+    }
+}
+
+/// Who is told of the progress and may end a rendering.
+pub trait Observer: Sync {
+    /// `rays` more primary rays of `total` are done.
+    fn advance(&self, rays: u64, total: u64);
+    /// Whether to stop.
+    fn is_cancelled(&self) -> bool {
+        false
+    }
+}
+
+/// Tells nobody.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Silent;
+
+impl Observer for Silent {
+    fn advance(&self, _rays: u64, _total: u64) {}
+}
+
+/// Can be cancelled from another thread.
+impl Observer for AtomicBool {
+    fn advance(&self, _rays: u64, _total: u64) {}
+    fn is_cancelled(&self) -> bool {
+        self.load(Ordering::Relaxed)
+    }
+}
+
+/// Why there is no picture.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RenderError {
+    /// The field cannot be made.
+    #[error(transparent)]
+    Field(#[from] zeroset_field::field::FieldError),
+    /// The field cannot be compiled.
+    #[error(transparent)]
+    Compile(#[from] zeroset_field::program::CompileError),
+    /// The observer asked to stop.
+    #[error("the rendering was cancelled")]
+    Cancelled,
+    /// The number of threads asked for cannot be had.
+    #[error("cannot start {threads} threads: {reason}")]
+    Threads {
+        /// Asked for.
+        threads: usize,
+        /// What the system said.
+        reason: String,
+    },
+}
