@@ -1,0 +1,107 @@
+//! An entry as a table of plain functions, so that the proofs compile once and not once an entry.
+
+use fearless_simd::{Level, Simd, dispatch, prelude::*};
+use zeroset_field::bounds::{Aabb, Exactness};
+use zeroset_field::catalogue::{Info, Primitive};
+use zeroset_field::number::{Args, Dual, F64, Interval, Lanes, Recorder, v3};
+
+pub type Point = [f64; 3];
+
+/// A catalogue entry, over every number type.
+#[derive(Clone, Copy)]
+pub struct Entry {
+    pub info: Info,
+    pub exactness: Exactness,
+    pub samples: &'static [&'static [f64]],
+    /// The reference.
+    pub value: fn(Point, &[f32]) -> f64,
+    /// Value and gradient.
+    pub gradient: fn(Point, &[f32]) -> (f64, Point),
+    /// One point in `f32`, with its gradient.
+    pub single: fn([f32; 3], &[f32]) -> (f32, [f32; 3]),
+    /// Points in SIMD at a level of instructions.
+    pub lanes: fn(Level, &[[f32; 3]], &[f32]) -> Vec<f32>,
+    /// A proven range over a box.
+    pub range: fn([Interval; 3], &[f32]) -> Interval,
+    /// The formula and its gradient as two WGSL functions.
+    pub shader: fn() -> String,
+    pub bounds: fn(&[f64]) -> Aabb,
+    pub lipschitz: fn(&[f64]) -> f64,
+    pub contains: fn(&[f64], Point) -> bool,
+    pub check: fn(&[f64]) -> Result<(), String>,
+}
+
+/// The table of `P`.
+pub fn entry<P: Primitive>() -> Entry {
+    Entry {
+        info: P::INFO,
+        exactness: P::EXACTNESS,
+        samples: P::SAMPLES,
+        value: |p, a| P::distance(v3(F64(p[0]), F64(p[1]), F64(p[2])), Args::new(a)).0,
+        gradient: |p, a| {
+            let d = P::distance(
+                Dual::point(v3(F64(p[0]), F64(p[1]), F64(p[2]))),
+                Args::new(a),
+            );
+            (d.v.0, d.d.map(|x| x.0))
+        },
+        single: |p, a| {
+            let d = P::distance(Dual::point(v3(p[0], p[1], p[2])), Args::new(a));
+            (d.v, d.d)
+        },
+        lanes: |level, points, a| dispatch!(level, s => lanes::<P, _>(s, points, a)),
+        range: |b, a| P::distance(v3(b[0], b[1], b[2]), Args::new(a)),
+        shader: shader::<P>,
+        bounds: P::bounds,
+        lipschitz: P::lipschitz,
+        contains: P::contains,
+        check: P::check,
+    }
+}
+
+#[inline(always)]
+fn lanes<P: Primitive, S: Simd>(s: S, points: &[[f32; 3]], a: &[f32]) -> Vec<f32> {
+    let mut out = Vec::with_capacity(points.len());
+    for chunk in points.chunks(S::f32s::LEN) {
+        let axis = |k: usize| Lanes::<S>(S::f32s::from_fn(s, |i| chunk[i.min(chunk.len() - 1)][k]));
+        let d = P::distance(v3(axis(0), axis(1), axis(2)), Args::new(a));
+        out.extend_from_slice(&d.0.as_slice()[..chunk.len()]);
+    }
+    out
+}
+
+fn shader<P: Primitive>() -> String {
+    let recorder = Recorder::new();
+    let p = || {
+        v3(
+            recorder.input("p.x"),
+            recorder.input("p.y"),
+            recorder.input("p.z"),
+        )
+    };
+    let value = P::distance(p(), Args::new(&&recorder));
+    let value = recorder.function("value", &[value]);
+    let recorder = Recorder::new();
+    let p = || {
+        v3(
+            recorder.input("p.x"),
+            recorder.input("p.y"),
+            recorder.input("p.z"),
+        )
+    };
+    let d = P::distance(Dual::point(p()), Args::new(&&recorder));
+    value + &recorder.function("gradient", &[d.d[0], d.d[1], d.d[2], d.v])
+}
+
+/// Every level of instructions that this machine has.
+pub fn levels() -> Vec<(&'static str, Level)> {
+    let mut levels = vec![("baseline", Level::baseline())];
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    {
+        let best = Level::new();
+        levels.extend(best.as_sse4_2().map(|s| ("sse4.2", s.level())));
+        levels.extend(best.as_avx2().map(|s| ("avx2", s.level())));
+        levels.extend(best.as_avx512().map(|s| ("avx512", s.level())));
+    }
+    levels
+}

@@ -1,0 +1,64 @@
+//! Every primitive of the catalogue is what it says: a new entry is proven by being listed.
+//!
+//! `cargo test --test primitives torus` proves one entry (any part of the struct's name, with its capitals).
+
+use zeroset_field::bounds::Exactness;
+use zeroset_field::{catalogue, each_primitive};
+
+mod case;
+mod entry;
+mod geometry;
+mod mutants;
+mod numbers;
+mod statement;
+
+use case::{Case, Failure};
+use entry::{Entry, entry};
+
+/// All proofs at all sets of parameters.
+fn prove(e: &Entry) -> Result<(), Failure> {
+    statement::info(e)?;
+    statement::shader(e)?;
+    for params in statement::sets(e) {
+        let case = Case::new(e, &params)?;
+        geometry::sign(&case)?;
+        if e.exactness != Exactness::Estimate {
+            geometry::slope(&case)?;
+            geometry::empty_ball(&case)?;
+            geometry::reached(&case)?;
+            numbers::gradient(&case)?;
+        }
+        geometry::bounds(&case)?;
+        numbers::single(&case)?;
+        numbers::interval(&case)?;
+    }
+    Ok(())
+}
+
+macro_rules! proofs {
+    ($($module:ident :: $entry:ident,)*) => {
+        /// Every entry.
+        const ALL: &[fn() -> Entry] = &[$(entry::<catalogue::$module::$entry>),*];
+
+        #[allow(non_snake_case, reason = "a test has the name of its entry")]
+        mod prove {
+            use super::*;
+            $(
+                #[test]
+                fn $entry() {
+                    if let Err(failure) = super::prove(&entry::<catalogue::$module::$entry>()) {
+                        panic!("{failure}");
+                    }
+                }
+            )*
+        }
+    };
+}
+each_primitive!(proofs);
+
+#[test]
+fn names_are_unique() {
+    let mut names: Vec<&str> = ALL.iter().map(|e| e().info.name).collect();
+    names.sort_unstable();
+    assert!(names.windows(2).all(|w| w[0] != w[1]), "{names:?}");
+}

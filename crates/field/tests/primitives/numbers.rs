@@ -1,0 +1,132 @@
+//! Proofs that every number type computes the same formula.
+
+use zeroset_field::number::Interval;
+
+use crate::case::{Case, Failure, along, length};
+use crate::entry::levels;
+
+/// Error of `f32` and SIMD, relative to the size of the shape and the distance from the origin.
+pub const SINGLE: f64 = 1e-5;
+
+/// `f32` and every SIMD level against `f64`; no gradient that is not a number, not even at places of symmetry.
+pub fn single(case: &Case<'_>) -> Result<(), Failure> {
+    let places: Vec<[f32; 3]> = case
+        .places(600, 10)
+        .iter()
+        .map(|p| p.map(|x| x as f32))
+        .collect();
+    let compare = |what: &str, p: [f32; 3], value: f32| {
+        let p = p.map(f64::from);
+        let exact = case.value(p);
+        let allowed = SINGLE * (case.size + length(p));
+        if !((f64::from(value) - exact).abs() <= allowed) {
+            return Err(case.fail(
+                "f32",
+                format!("{what} gives {value} at {p:?}, f64 gives {exact}"),
+            ));
+        }
+        Ok(())
+    };
+    for &p in &places {
+        let (value, gradient) = (case.entry.single)(p, &case.stored);
+        compare("f32", p, value)?;
+        if gradient.iter().any(|g| !g.is_finite()) {
+            return Err(case.fail("gradient", format!("{gradient:?} in f32 at {p:?}")));
+        }
+    }
+    for (name, level) in levels() {
+        for (&p, value) in places
+            .iter()
+            .zip((case.entry.lanes)(level, &places, &case.stored))
+        {
+            compare(name, p, value)?;
+        }
+    }
+    Ok(())
+}
+
+/// Share of small boxes whose range must be useful, and how many times wider than the field's variation it may be.
+const USEFUL: (f64, f64) = (0.75, 64.0);
+
+/// The range over a box holds the value at every point of it, and over small boxes says something.
+pub fn interval(case: &Case<'_>) -> Result<(), Failure> {
+    let mut random = case.random(11);
+    let (mut small, mut useful) = (0, 0);
+    for p in case.places(250, 12) {
+        let half = random.scale(1e-4, 1.0) * case.size;
+        let range = (case.entry.range)(p.map(|x| Interval::new(x - half, x + half)), &case.stored);
+        for _ in 0..6 {
+            let q = std::array::from_fn(|k| p[k] + random.within(-half, half));
+            let value = case.value(q);
+            let slack = 1e-12 * (case.size + length(q));
+            if !(range.lo - slack <= value && value <= range.hi + slack) {
+                return Err(case.fail(
+                    "interval",
+                    format!("{value} at {q:?} is not in {range:?}, half side {half}"),
+                ));
+            }
+        }
+        if half < 1e-2 * case.size {
+            small += 1;
+            useful += usize::from(range.hi - range.lo <= USEFUL.1 * case.lipschitz * half);
+        }
+    }
+    if (useful as f64) < USEFUL.0 * f64::from(small) {
+        return Err(case.fail(
+            "interval",
+            format!("only {useful} of {small} ranges over small boxes are useful"),
+        ));
+    }
+    Ok(())
+}
+
+/// The dual number's value is the value, its gradient is the difference quotient, and no longer than the stated slope.
+pub fn gradient(case: &Case<'_>) -> Result<(), Failure> {
+    let places = case.places(600, 13);
+    let h = 1e-5 * case.size;
+    let mut smooth = 0;
+    for &p in &places {
+        let (value, gradient) = (case.entry.gradient)(p, &case.stored);
+        let plain = case.value(p);
+        if !((value - plain).abs() <= 1e-12 * (case.size + length(p))) {
+            return Err(case.fail(
+                "gradient",
+                format!("its value at {p:?} is {value}, not {plain}"),
+            ));
+        }
+        let slope = length(gradient);
+        if !(slope <= case.lipschitz * (1.0 + 1e-9) + 1e-9) {
+            return Err(case.fail(
+                "gradient",
+                format!("{gradient:?} at {p:?} is longer than {}", case.lipschitz),
+            ));
+        }
+        let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let quotients = axes.map(|d| {
+            let (a, b) = (case.value(along(p, d, h)), case.value(along(p, d, -h)));
+            ((a - plain) / h, (plain - b) / h)
+        });
+        // At an edge of the field the two sides differ and there is no gradient to compare.
+        if quotients
+            .iter()
+            .all(|(a, b)| (a - b).abs() < 1e-3 * case.lipschitz)
+        {
+            smooth += 1;
+            for (k, (a, b)) in quotients.into_iter().enumerate() {
+                if (gradient[k] - 0.5 * (a + b)).abs() > 2e-3 * case.lipschitz {
+                    return Err(case.fail(
+                        "gradient",
+                        format!("{gradient:?} at {p:?}, differences give {quotients:?}"),
+                    ));
+                }
+            }
+        }
+    }
+    if smooth * 2 < places.len() {
+        return Err(case.fail(
+            "gradient",
+            format!("smooth at only {smooth} of {} places", places.len()),
+        ));
+    }
+    Ok(())
+}
