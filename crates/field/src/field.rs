@@ -201,7 +201,8 @@ impl Field {
     pub fn map(&self, entry: &'static MapEntry, params: Vec<f64>) -> Result<Field, FieldError> {
         check_params(&entry.info, &params, entry.check)?;
         let child = self.facts();
-        let dimension = through(&entry.info, child.dimension)?;
+        let through = through(&entry.info, child.dimension)?;
+        let dimension = if entry.section { Dimension::Two } else { through };
         let bounds = (entry.bounds)(&params, &child.bounds);
         let unfit = |reason| FieldError::Unfit { entry: entry.info.name, reason };
         let stretch = match (entry.stretch)(&params, &bounds).map_err(unfit)? {

@@ -29,6 +29,8 @@ pub struct PrimitiveEntry {
 pub struct MapEntry {
     /// Name, parameters, words.
     pub info: Info,
+    /// Whether it takes a solid and gives a 2D field.
+    pub section: bool,
     /// Whether an exact distance stays exact.
     pub rigid: bool,
     /// More parameter sets worth a proof.
@@ -173,6 +175,7 @@ fn primitive<E: Primitive>() -> PrimitiveEntry {
 fn map<E: Map>() -> MapEntry {
     MapEntry {
         info: E::INFO,
+        section: E::SECTION,
         rigid: E::RIGID,
         samples: E::SAMPLES,
         code: 0,

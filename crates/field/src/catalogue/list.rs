@@ -22,7 +22,36 @@ macro_rules! each_join {
             join::Union,
             join::Intersection,
             join::Subtraction,
+            join::Xor,
+            join::Mix,
             join_smooth::SmoothUnion,
+            join_smooth::SmoothIntersection,
+            join_smooth::SmoothSubtraction,
+            join_smooth::CubicUnion,
+            join_smooth::CubicIntersection,
+            join_smooth::CubicSubtraction,
+            join_smooth::CircularUnion,
+            join_smooth::CircularIntersection,
+            join_smooth::CircularSubtraction,
+            join_smooth::ExponentialUnion,
+            join_smooth::ExponentialIntersection,
+            join_smooth::ExponentialSubtraction,
+            join_edge::ChamferUnion,
+            join_edge::ChamferIntersection,
+            join_edge::ChamferSubtraction,
+            join_edge::RoundUnion,
+            join_edge::RoundIntersection,
+            join_edge::RoundSubtraction,
+            join_edge::StairsUnion,
+            join_edge::StairsIntersection,
+            join_edge::StairsSubtraction,
+            join_edge::ColumnsUnion,
+            join_edge::ColumnsIntersection,
+            join_edge::ColumnsSubtraction,
+            join_line::Pipe,
+            join_line::Engrave,
+            join_line::Groove,
+            join_line::Tongue,
         }
     };
 }
@@ -33,7 +62,17 @@ macro_rules! each_join {
 macro_rules! each_map {
     ($then:ident $($args:tt)*) => {
         $then! { $($args)*
-            map::Twist,
+            map::Symmetry,
+            map::Mirror,
+            map::Elongate,
+            map::Revolve,
+            map::Slice,
+            map_deform::Scale3,
+            map_deform::Shear,
+            map_deform::Twist,
+            map_deform::Taper,
+            map_bend::Bend,
+            map_bend::Wrap,
         }
     };
 }
@@ -44,8 +83,10 @@ macro_rules! each_map {
 macro_rules! each_modify {
     ($then:ident $($args:tt)*) => {
         $then! { $($args)*
-            modify::Onion,
+            modify::Complement,
+            modify::Offset,
             modify::Round,
+            modify::Onion,
             modify::Extrude,
         }
     };

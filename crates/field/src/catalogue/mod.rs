@@ -7,13 +7,18 @@
 //! 2D shapes are fields that ignore `z`: they become solids by `extrude` and `revolve`.
 
 use crate::bounds::{Aabb, Exactness};
-use crate::number::{Args, Real, Vec3, length2};
+use crate::number::{Args, Real, Vec2, Vec3, length2, v2, v3};
 
-pub mod join;
-pub mod join_smooth;
 pub mod entries;
+pub mod join;
+pub mod join_edge;
+pub mod join_line;
+pub mod join_smooth;
+pub mod join_style;
 pub mod list;
 pub mod map;
+pub mod map_bend;
+pub mod map_deform;
 pub mod modify;
 pub mod solid;
 
@@ -28,8 +33,10 @@ pub enum Unit {
     Ratio,
     /// A whole number.
     Count,
-    /// Radians per scene unit, cycles per scene unit and the like.
+    /// Radians per scene unit here, degrees per scene unit in scene files.
     Rate,
+    /// Cycles per scene unit.
+    Frequency,
     /// A direction; its length does not matter.
     Direction,
 }
@@ -181,8 +188,10 @@ pub enum Stretch {
 
 /// A map of space: the shape at `map(p)` is seen at `p`.
 pub trait Map: 'static {
-    /// Name, parameters, words.
+    /// Name, parameters, words. [`Dimension::Two`] takes a 2D field and makes a solid.
     const INFO: Info;
+    /// Whether it takes a solid and gives a 2D field.
+    const SECTION: bool = false;
     /// Whether an exact distance stays exact (rigid motions only).
     const RIGID: bool = false;
     /// More parameter sets that the proofs run at, beside the defaults.
@@ -210,8 +219,15 @@ pub trait Modify: 'static {
     fn modify<R: Real>(d: R, p: Vec3<R>, a: Args<'_, R>) -> R;
     /// Slope of the result, from the slope of the field.
     fn lipschitz(a: &[f64], slope: f64) -> f64;
-    /// A box that holds the result, from the box of the field.
-    fn bounds(a: &[f64], shape: &Aabb) -> Aabb;
+    /// A box that holds all places where the result is at most `level`, from boxes of the field's level sets: `shape(l)`
+    /// holds all places where the field is at most `l`. Level sets, because a field that is no exact distance may grow by
+    /// more than its value says.
+    fn level_bounds(a: &[f64], level: f64, shape: &dyn Fn(f64) -> Aabb) -> Aabb;
+    /// A box that holds the result, from the box of a field whose value is at least the distance to that box along some
+    /// axis.
+    fn bounds(a: &[f64], shape: &Aabb) -> Aabb {
+        Self::level_bounds(a, 0.0, &|level| shape.grow(level))
+    }
     /// How true the result is.
     fn exactness(shape: Exactness) -> Exactness;
     /// Relations between parameters that ranges cannot state.
@@ -233,11 +249,18 @@ pub trait Join: 'static {
     fn join<R: Real>(x: R, y: R, a: Args<'_, R>) -> R;
     /// Slope of the result, from the slopes of the two, over all directions in which both may change.
     fn lipschitz(a: &[f64], x: f64, y: f64) -> f64;
-    /// A box that holds the result.
-    fn bounds(a: &[f64], x: &Aabb, y: &Aabb) -> Aabb;
+    /// A box that holds all places where the result is at most `level`, from boxes of the operands' level sets: `x(l)`
+    /// holds all places where `x` is at most `l`.
+    fn level_bounds(a: &[f64], level: f64, x: &dyn Fn(f64) -> Aabb, y: &dyn Fn(f64) -> Aabb) -> Aabb;
+    /// A box that holds the result, from the boxes of fields whose values are at least the distance to their box along
+    /// some axis.
+    fn bounds(a: &[f64], x: &Aabb, y: &Aabb) -> Aabb {
+        Self::level_bounds(a, 0.0, &|level| x.grow(level), &|level| y.grow(level))
+    }
     /// How true the result is.
     fn exactness(x: Exactness, y: Exactness) -> Exactness;
-    /// How far from both surfaces the join may move the surface (0 for sharp joins).
+    /// How far from both surfaces the join may move the surface: 0 for sharp joins, infinite where the operands' signs
+    /// alone never decide.
     fn reach(_a: &[f64]) -> f64 {
         0.0
     }
