@@ -2,9 +2,12 @@
 
 pub mod bounds;
 pub mod catalogue;
+mod compile;
+pub mod eval;
 pub mod field;
 pub mod formula;
 pub mod number;
+pub mod op;
 pub mod placement;
 pub mod program;
 pub mod repetition;

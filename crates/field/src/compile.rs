@@ -1,0 +1,355 @@
+//! From the tree to the list: lowering, sharing, registers.
+
+use crate::bounds::Aabb;
+use crate::catalogue::Stretch;
+use crate::field::{Field, Node, Paint};
+use crate::formula::{Formula, Step};
+use crate::op::code;
+use crate::placement::Placement;
+use crate::program::{Code, CompileError, Instruction, Limits, Operation, Program, Structure};
+use crate::repetition::{Polar, Repetition};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Sides of a box that has none, as parameters: squares of it still fit single precision.
+const FAR: f64 = 1e18;
+
+/// A step before registers are assigned: operands are the numbers of earlier steps.
+#[derive(Clone, Copy)]
+struct Lowered {
+    operation: Operation,
+    a: u32,
+    b: u32,
+    at: u32,
+}
+
+impl Lowered {
+    fn gives_point(&self) -> bool {
+        matches!(self.operation, Operation::Warp(_))
+    }
+}
+
+/// The step that is the point to evaluate at.
+const INPUT: u32 = u32::MAX;
+
+struct Lowering<'l> {
+    steps: Vec<Lowered>,
+    params: Vec<f32>,
+    /// Shared nodes: the value of a node at a point.
+    known: HashMap<(usize, u32), u32>,
+    limits: &'l Limits,
+}
+
+pub(crate) fn compile(field: &Field, limits: &Limits) -> Result<Program, CompileError> {
+    let facts = field.facts();
+    if facts.dimension == crate::catalogue::Dimension::Two {
+        return Err(CompileError::Flat);
+    }
+    let mut l = Lowering { steps: Vec::new(), params: Vec::new(), known: HashMap::new(), limits };
+    let value = l.field(field, INPUT)?;
+    let result = l.unit(field, value)?;
+    let structure = Structure { values: registers(&l.steps, result, false)?, marks: registers(&l.steps, result, true)? };
+    Ok(Program {
+        structure: Arc::new(structure),
+        params: l.params.into(),
+        bounds: facts.bounds,
+        exactness: facts.exactness,
+    })
+}
+
+impl Lowering<'_> {
+    fn emit(&mut self, operation: Operation, a: u32, b: u32, params: &[f64]) -> Result<u32, CompileError> {
+        if self.steps.len() >= self.limits.instructions {
+            return Err(CompileError::Instructions { limit: self.limits.instructions });
+        }
+        if self.params.len() + params.len() > self.limits.params {
+            return Err(CompileError::Params { limit: self.limits.params });
+        }
+        let at = self.params.len() as u32;
+        self.params.extend(params.iter().map(|&x| x.clamp(-FAR, FAR) as f32));
+        self.steps.push(Lowered { operation, a, b, at });
+        Ok(self.steps.len() as u32 - 1)
+    }
+
+    fn leaf(&mut self, code: u16, point: u32, params: &[f64]) -> Result<u32, CompileError> {
+        self.emit(Operation::Leaf(code), point, point, params)
+    }
+
+    fn warp(&mut self, code: u16, point: u32, params: &[f64]) -> Result<u32, CompileError> {
+        self.emit(Operation::Warp(code), point, point, params)
+    }
+
+    fn change(&mut self, code: u16, value: u32, point: u32, params: &[f64]) -> Result<u32, CompileError> {
+        self.emit(Operation::Change(code), value, point, params)
+    }
+
+    fn pair(&mut self, code: u16, x: u32, y: u32, params: &[f64]) -> Result<u32, CompileError> {
+        // an instruction needs operands in different registers
+        let y = if x == y { self.change(code::SCALE, y, INPUT, &[1.0])? } else { y };
+        self.emit(Operation::Pair(code), x, y, params)
+    }
+
+    /// The value of a field at a point, with the slope that its facts state.
+    fn field(&mut self, field: &Field, point: u32) -> Result<u32, CompileError> {
+        if let Some(&value) = self.known.get(&(field.key(), point)) {
+            return Ok(value);
+        }
+        let value = match field.node() {
+            Node::Primitive { entry, params } => self.leaf(entry.code, point, &centred([0.0; 3], params))?,
+            Node::Map { entry, params, shape } => {
+                let stretch = (entry.stretch)(params, &field.facts().bounds);
+                if let Ok(Stretch::Within(within, _)) = stretch {
+                    let sides = sides(&within);
+                    let inside = self.warp(code::CLAMP, point, &sides)?;
+                    let mapped = self.warp(entry.code, inside, params)?;
+                    let value = self.field(shape, mapped)?;
+                    let slope = [field.facts().slope];
+                    self.change(code::CONTINUE, value, point, &[&sides[..], &slope].concat())?
+                } else {
+                    let mapped = self.warp(entry.code, point, params)?;
+                    self.field(shape, mapped)?
+                }
+            }
+            Node::Modify { entry, params, shape } => {
+                let value = self.field(shape, point)?;
+                self.change(entry.code, value, point, params)?
+            }
+            Node::Join { entry, params, shapes } => {
+                let mut joined = None;
+                for shape in shapes {
+                    let mut value = self.field(shape, point)?;
+                    if entry.sharp {
+                        value = self.unit(shape, value)?;
+                    }
+                    joined = Some(match joined {
+                        None => value,
+                        Some(before) => self.pair(entry.code, before, value, params)?,
+                    });
+                }
+                joined.expect("Field::join refuses joins of nothing")
+            }
+            Node::Place { placement, shape } => self.place(placement, shape, point)?,
+            Node::Repeat { repetition, shape } => self.repeat(repetition, shape, point)?,
+            Node::Polar { polar, shape } => self.polar(polar, shape, point)?,
+            Node::Formula(formula) => self.formula(formula, point)?,
+            Node::Paint { paint, shape } => {
+                let value = self.field(shape, point)?;
+                self.mark(*paint, value)?
+            }
+        };
+        self.known.insert((field.key(), point), value);
+        Ok(value)
+    }
+
+    fn mark(&mut self, paint: Paint, value: u32) -> Result<u32, CompileError> {
+        self.emit(Operation::mark(paint), value, INPUT, &[])
+    }
+
+    /// The value of a field, divided by its slope.
+    fn unit(&mut self, field: &Field, value: u32) -> Result<u32, CompileError> {
+        let facts = field.facts();
+        if !facts.steep {
+            return Ok(value);
+        }
+        // a hair less, for the rounding to single precision
+        let scale = if facts.slope > 0.0 { (1.0 - 1e-6) / facts.slope } else { 1.0 };
+        self.change(code::SCALE, value, INPUT, &[scale])
+    }
+
+    fn place(&mut self, placement: &Placement, shape: &Field, point: u32) -> Result<u32, CompileError> {
+        let mut value = match shape.node() {
+            _ if placement.turns || placement.scales => {
+                let placed = self.warp(code::RIGID, point, &inverse(placement))?;
+                self.field(shape, placed)?
+            }
+            Node::Primitive { entry, params } => self.leaf(entry.code, point, &centred(placement.offset, params))?,
+            _ => {
+                let placed = self.warp(code::OFFSET, point, &placement.offset)?;
+                self.field(shape, placed)?
+            }
+        };
+        if placement.scales {
+            value = self.change(code::SCALE, value, INPUT, &[placement.scale])?;
+        }
+        Ok(value)
+    }
+
+    fn repeat(&mut self, repetition: &Repetition, shape: &Field, point: u32) -> Result<u32, CompileError> {
+        let bounds = shape.facts().bounds;
+        let grid = grid(repetition);
+        let on: [bool; 3] = std::array::from_fn(|k| repetition.repeats(k));
+        let mut nearest = None;
+        for copy in 0..8_u32 {
+            let bits: [f64; 3] = std::array::from_fn(|k| f64::from(copy >> k & 1));
+            if (0..3).any(|k| !on[k] && bits[k] != 0.0) {
+                continue;
+            }
+            let seed = [f64::from(repetition.seed % 289)];
+            let params = [&bits[..], &repetition.vary, &seed, &grid].concat();
+            let cell = self.warp(code::REPEAT_CELL, point, &params)?;
+            let value = self.field(shape, cell)?;
+            let value = self.unit(shape, value)?;
+            nearest = Some(match nearest {
+                None => value,
+                Some(before) => self.pair(code::MIN, before, value, &[])?,
+            });
+        }
+        let nearest = nearest.expect("the copy of no bits is always there");
+        let (low, high): (Vec<f64>, Vec<f64>) = (0..3).map(|k| repetition.extent(&bounds, k)).unzip();
+        self.change(code::REPEAT_WALL, nearest, point, &[low, high, grid].concat())
+    }
+
+    fn polar(&mut self, polar: &Polar, shape: &Field, point: u32) -> Result<u32, CompileError> {
+        let bounds = shape.facts().bounds;
+        let narrow = polar.is_narrow(&bounds);
+        let mut nearest = None;
+        for copy in 0..(if narrow { 2 } else { polar.count }) {
+            let cell = if narrow {
+                self.warp(code::POLAR_CELL, point, &[f64::from(copy), polar.sector()])?
+            } else {
+                let turn = Placement::turned([0.0, 1.0, 0.0], -f64::from(copy) * polar.sector());
+                self.warp(code::RIGID, point, &inverse(&turn))?
+            };
+            let value = self.field(shape, cell)?;
+            let value = self.unit(shape, value)?;
+            nearest = Some(match nearest {
+                None => value,
+                Some(before) => self.pair(code::MIN, before, value, &[])?,
+            });
+        }
+        let nearest = nearest.expect("Polar::check refuses no copies");
+        let Some((low, high)) = Polar::angles(&bounds).filter(|_| narrow) else {
+            return Ok(nearest);
+        };
+        let inner = bounds.min[0].hypot(bounds.min[2].max(-bounds.max[2]).max(0.0));
+        let wall = [polar.sector(), low, high, inner, bounds.min[1], bounds.max[1]];
+        self.change(code::POLAR_WALL, nearest, point, &wall)
+    }
+
+    fn formula(&mut self, formula: &Formula, point: u32) -> Result<u32, CompileError> {
+        let sides = sides(&formula.bounds());
+        let inside = self.warp(code::CLAMP, point, &sides)?;
+        let mut values = Vec::with_capacity(formula.steps().len());
+        for step in formula.steps() {
+            values.push(match *step {
+                Step::Coordinate(k) => self.leaf(code::COORDINATE + u16::from(k), inside, &[])?,
+                Step::Constant(c) => self.leaf(code::CONSTANT, inside, &[c])?,
+                Step::Unary(f, x) => self.change(code::unary(f), values[x as usize], inside, &[])?,
+                Step::Binary(f, x, y) => self.pair(code::binary(f), values[x as usize], values[y as usize], &[])?,
+            });
+        }
+        let value = values.last().copied().expect("Formula refuses formulas of nothing");
+        self.change(code::CONTINUE, value, point, &[&sides[..], &[formula.slope()]].concat())
+    }
+}
+
+/// A primitive's parameters behind its centre.
+fn centred(centre: [f64; 3], params: &[f64]) -> Vec<f64> {
+    [&centre[..], params].concat()
+}
+
+fn sides(b: &Aabb) -> [f64; 6] {
+    [b.min[0], b.min[1], b.min[2], b.max[0], b.max[1], b.max[2]]
+}
+
+/// Rows and offset of the motion from where a shape is seen to its own space.
+fn inverse(placement: &Placement) -> [f64; 12] {
+    let mut m = [0.0; 12];
+    let origin = placement.invert([0.0; 3]);
+    for i in 0..3 {
+        for k in 0..3 {
+            m[3 * i + k] = placement.rotation[k][i] / placement.scale;
+        }
+        m[9 + i] = origin[i];
+    }
+    m
+}
+
+/// The grid of a repetition as [`RepeatCell`](crate::op::domain::RepeatCell) takes it.
+fn grid(r: &Repetition) -> Vec<f64> {
+    // cells without end: as many as single precision tells apart
+    let endless = 4_000_000.0;
+    let count = |k: usize| f64::from(r.count[k]);
+    let axis = |k: usize| {
+        if !r.repeats(k) {
+            [0.0, 1.0, 0.0, 0.0, 1.0]
+        } else if r.count[k] == 0 {
+            [1.0, r.spacing[k], 0.0, -endless, endless]
+        } else {
+            let shift = if r.count[k] % 2 == 0 { 0.5 } else { 0.0 };
+            let first = -(count(k) / 2.0).floor();
+            [1.0, r.spacing[k], shift, first, first + count(k) - 1.0]
+        }
+    };
+    let axes = [axis(0), axis(1), axis(2)];
+    (0..5).flat_map(|i| axes.map(|a| a[i])).collect()
+}
+
+/// Keeps what the result needs and gives every value a register, the same one to values that are never needed together.
+fn registers(steps: &[Lowered], result: u32, marks: bool) -> Result<Code, CompileError> {
+    // without marks, a mark is the value that it marks
+    let mut same: Vec<u32> = (0..steps.len() as u32).collect();
+    if !marks {
+        for (i, step) in steps.iter().enumerate() {
+            if matches!(step.operation, Operation::Mark(..)) {
+                same[i] = same[step.a as usize];
+            }
+        }
+    }
+    let actual = |i: u32| if i == INPUT { INPUT } else { same[i as usize] };
+    let result = actual(result);
+    let operands = |step: &Lowered| [actual(step.a), actual(step.b)];
+
+    let mut last_use = vec![None; steps.len()];
+    last_use[result as usize] = Some(steps.len());
+    for (i, step) in steps.iter().enumerate().rev() {
+        if last_use[i].is_some() {
+            for operand in operands(step) {
+                if operand != INPUT && last_use[operand as usize].is_none() {
+                    last_use[operand as usize] = Some(i);
+                }
+            }
+        }
+    }
+
+    // slots: points and values apart, numbered from zero
+    let mut slot = vec![0_usize; steps.len()];
+    let mut free: [Vec<usize>; 2] = [Vec::new(), Vec::new()];
+    let mut used = [0_usize; 2];
+    for (i, step) in steps.iter().enumerate() {
+        if last_use[i].is_none() {
+            continue;
+        }
+        let kind = usize::from(step.gives_point());
+        slot[i] = free[kind].pop().unwrap_or_else(|| {
+            used[kind] += 1;
+            used[kind] - 1
+        });
+        let [a, b] = operands(step);
+        for operand in [Some(a), (a != b).then_some(b)].into_iter().flatten() {
+            if operand != INPUT && last_use[operand as usize] == Some(i) {
+                free[usize::from(steps[operand as usize].gives_point())].push(slot[operand as usize]);
+            }
+        }
+    }
+
+    let points = 3 * (used[1] + 1);
+    let needed = points + used[0];
+    let limit = usize::from(u16::MAX) / 4;
+    if needed > limit {
+        return Err(CompileError::Registers { needed, limit });
+    }
+    let number = |i: u32| match i {
+        INPUT => 0,
+        i if steps[i as usize].gives_point() => 3 * (slot[i as usize] + 1),
+        i => points + slot[i as usize],
+    } as u16;
+    let instructions = (steps.iter().enumerate())
+        .filter(|(i, _)| last_use[*i].is_some())
+        .map(|(i, step)| {
+            let [a, b] = operands(step).map(number);
+            Instruction { operation: step.operation, out: number(i as u32), a, b, at: step.at }
+        })
+        .collect();
+    Ok(Code { instructions, registers: needed as u16, result: number(result) })
+}

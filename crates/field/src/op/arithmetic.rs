@@ -1,0 +1,104 @@
+//! The arithmetic of free-form formulas, one operation each.
+
+use super::{Change, Leaf, Pair};
+use crate::number::{Args, Real, Vec3, length2};
+
+/// x, y or z.
+pub struct Coordinate<const AXIS: usize>;
+
+impl<const AXIS: usize> Leaf for Coordinate<AXIS> {
+    #[inline(always)]
+    fn leaf<R: Real>(p: Vec3<R>, _a: Args<'_, R>) -> R {
+        [p.x, p.y, p.z][AXIS]
+    }
+}
+
+/// A number.
+pub struct Constant;
+
+impl Leaf for Constant {
+    #[inline(always)]
+    fn leaf<R: Real>(p: Vec3<R>, a: Args<'_, R>) -> R {
+        p.x.like(a.get(0))
+    }
+}
+
+macro_rules! unary {
+    ($($(#[$doc:meta])* $name:ident |$x:ident| $value:expr;)*) => {$(
+        $(#[$doc])*
+        pub struct $name;
+        impl Change for $name {
+            #[inline(always)]
+            fn change<R: Real>($x: R, _p: Vec3<R>, _a: Args<'_, R>) -> R {
+                $value
+            }
+        }
+    )*};
+}
+
+unary! {
+    /// `-x`
+    Neg |x| -x;
+    /// `|x|`
+    Abs |x| x.abs();
+    /// Square root; 0 below 0.
+    Sqrt |x| x.max(0.0).sqrt();
+    /// `x * x`
+    Square |x| x.sq();
+    /// Largest whole number not above.
+    Floor |x| x.floor();
+    /// Sine (radians).
+    Sin |x| x.sin();
+    /// Cosine (radians).
+    Cos |x| x.cos();
+    /// Tangent (radians).
+    Tan |x| x.tan();
+    /// Arc sine of `x` limited to [-1, 1].
+    Asin |x| x.max(-1.0).min(1.0).asin();
+    /// Arc cosine of `x` limited to [-1, 1].
+    Acos |x| x.max(-1.0).min(1.0).acos();
+    /// Arc tangent.
+    Atan |x| x.atan();
+    /// `e^x`
+    Exp |x| x.exp();
+    /// Natural logarithm.
+    Ln |x| x.ln();
+    /// Hyperbolic tangent.
+    Tanh |x| x.tanh();
+}
+
+macro_rules! binary {
+    ($($(#[$doc:meta])* $name:ident |$x:ident, $y:ident| $value:expr;)*) => {$(
+        $(#[$doc])*
+        pub struct $name;
+        impl Pair for $name {
+            #[inline(always)]
+            fn pair<R: Real>($x: R, $y: R, _a: Args<'_, R>) -> R {
+                $value
+            }
+        }
+    )*};
+}
+
+binary! {
+    /// `x + y`
+    Add |x, y| x + y;
+    /// `x - y`
+    Sub |x, y| x - y;
+    /// `x * y`
+    Mul |x, y| x * y;
+    /// `x / y`
+    Div |x, y| x / y;
+    /// The smaller.
+    Min |x, y| x.min(y);
+    /// The larger.
+    Max |x, y| x.max(y);
+    /// `x - y floor(x / y)`
+    Modulo |x, y| x - y * (x / y).floor();
+    /// `x^y` for x > 0.
+    Pow |x, y| (x.ln() * y).exp();
+    /// Angle of (y, x): the first operand is the ordinate.
+    Atan2 |x, y| x.atan2(y);
+    /// `sqrt(x^2 + y^2)`
+    Hypot |x, y| length2(x, y);
+}
