@@ -11,9 +11,15 @@ pub struct Aabb {
 
 impl Aabb {
     /// All of space.
-    pub const WHOLE: Aabb = Aabb { min: [f64::NEG_INFINITY; 3], max: [f64::INFINITY; 3] };
+    pub const WHOLE: Aabb = Aabb {
+        min: [f64::NEG_INFINITY; 3],
+        max: [f64::INFINITY; 3],
+    };
     /// Nothing.
-    pub const EMPTY: Aabb = Aabb { min: [f64::INFINITY; 3], max: [f64::NEG_INFINITY; 3] };
+    pub const EMPTY: Aabb = Aabb {
+        min: [f64::INFINITY; 3],
+        max: [f64::NEG_INFINITY; 3],
+    };
 
     /// The box between two corners.
     pub fn new(min: [f64; 3], max: [f64; 3]) -> Self {
@@ -22,7 +28,10 @@ impl Aabb {
 
     /// The box centred on the origin with these half sides.
     pub fn centred(half: [f64; 3]) -> Self {
-        Aabb { min: half.map(|h| -h), max: half }
+        Aabb {
+            min: half.map(|h| -h),
+            max: half,
+        }
     }
 
     /// Whether the box holds no point.
@@ -56,7 +65,10 @@ impl Aabb {
         if self.is_empty() {
             return *self;
         }
-        Aabb { min: self.min.map(|x| x - by), max: self.max.map(|x| x + by) }
+        Aabb {
+            min: self.min.map(|x| x - by),
+            max: self.max.map(|x| x + by),
+        }
     }
 
     /// The middle of the box; zero along an infinite axis.
@@ -75,7 +87,13 @@ impl Aabb {
     /// The eight corners (with infinities where the box is infinite).
     pub fn corners(&self) -> [[f64; 3]; 8] {
         std::array::from_fn(|i| {
-            std::array::from_fn(|k| if i >> k & 1 == 0 { self.min[k] } else { self.max[k] })
+            std::array::from_fn(|k| {
+                if i >> k & 1 == 0 {
+                    self.min[k]
+                } else {
+                    self.max[k]
+                }
+            })
         })
     }
 
@@ -88,7 +106,11 @@ impl Aabb {
     pub fn radius_about(&self, axis: usize) -> f64 {
         let reach = |k: usize| self.min[k].abs().max(self.max[k].abs());
         let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
-        if self.is_empty() { 0.0 } else { reach(a).hypot(reach(b)) }
+        if self.is_empty() {
+            0.0
+        } else {
+            reach(a).hypot(reach(b))
+        }
     }
 }
 

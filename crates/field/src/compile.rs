@@ -45,10 +45,18 @@ pub(crate) fn compile(field: &Field, limits: &Limits) -> Result<Program, Compile
     if facts.dimension == crate::catalogue::Dimension::Two {
         return Err(CompileError::Flat);
     }
-    let mut l = Lowering { steps: Vec::new(), params: Vec::new(), known: HashMap::new(), limits };
+    let mut l = Lowering {
+        steps: Vec::new(),
+        params: Vec::new(),
+        known: HashMap::new(),
+        limits,
+    };
     let value = l.field(field, INPUT)?;
     let result = l.unit(field, value)?;
-    let structure = Structure { values: registers(&l.steps, result, false)?, marks: registers(&l.steps, result, true)? };
+    let structure = Structure {
+        values: registers(&l.steps, result, false)?,
+        marks: registers(&l.steps, result, true)?,
+    };
     Ok(Program {
         structure: Arc::new(structure),
         params: l.params.into(),
@@ -58,16 +66,32 @@ pub(crate) fn compile(field: &Field, limits: &Limits) -> Result<Program, Compile
 }
 
 impl Lowering<'_> {
-    fn emit(&mut self, operation: Operation, a: u32, b: u32, params: &[f64]) -> Result<u32, CompileError> {
+    fn emit(
+        &mut self,
+        operation: Operation,
+        a: u32,
+        b: u32,
+        params: &[f64],
+    ) -> Result<u32, CompileError> {
         if self.steps.len() >= self.limits.instructions {
-            return Err(CompileError::Instructions { limit: self.limits.instructions });
+            return Err(CompileError::Instructions {
+                limit: self.limits.instructions,
+            });
         }
         if self.params.len() + params.len() > self.limits.params {
-            return Err(CompileError::Params { limit: self.limits.params });
+            return Err(CompileError::Params {
+                limit: self.limits.params,
+            });
         }
         let at = self.params.len() as u32;
-        self.params.extend(params.iter().map(|&x| x.clamp(-FAR, FAR) as f32));
-        self.steps.push(Lowered { operation, a, b, at });
+        self.params
+            .extend(params.iter().map(|&x| x.clamp(-FAR, FAR) as f32));
+        self.steps.push(Lowered {
+            operation,
+            a,
+            b,
+            at,
+        });
         Ok(self.steps.len() as u32 - 1)
     }
 
@@ -79,13 +103,23 @@ impl Lowering<'_> {
         self.emit(Operation::Warp(code), point, point, params)
     }
 
-    fn change(&mut self, code: u16, value: u32, point: u32, params: &[f64]) -> Result<u32, CompileError> {
+    fn change(
+        &mut self,
+        code: u16,
+        value: u32,
+        point: u32,
+        params: &[f64],
+    ) -> Result<u32, CompileError> {
         self.emit(Operation::Change(code), value, point, params)
     }
 
     fn pair(&mut self, code: u16, x: u32, y: u32, params: &[f64]) -> Result<u32, CompileError> {
         // an instruction needs operands in different registers
-        let y = if x == y { self.change(code::SCALE, y, INPUT, &[1.0])? } else { y };
+        let y = if x == y {
+            self.change(code::SCALE, y, INPUT, &[1.0])?
+        } else {
+            y
+        };
         self.emit(Operation::Pair(code), x, y, params)
     }
 
@@ -95,8 +129,14 @@ impl Lowering<'_> {
             return Ok(value);
         }
         let value = match field.node() {
-            Node::Primitive { entry, params } => self.leaf(entry.code, point, &centred([0.0; 3], params))?,
-            Node::Map { entry, params, shape } => {
+            Node::Primitive { entry, params } => {
+                self.leaf(entry.code, point, &centred([0.0; 3], params))?
+            }
+            Node::Map {
+                entry,
+                params,
+                shape,
+            } => {
                 let stretch = (entry.stretch)(params, &field.facts().bounds);
                 if let Ok(Stretch::Within(within, _)) = stretch {
                     let sides = sides(&within);
@@ -110,11 +150,19 @@ impl Lowering<'_> {
                     self.field(shape, mapped)?
                 }
             }
-            Node::Modify { entry, params, shape } => {
+            Node::Modify {
+                entry,
+                params,
+                shape,
+            } => {
                 let value = self.field(shape, point)?;
                 self.change(entry.code, value, point, params)?
             }
-            Node::Join { entry, params, shapes } => {
+            Node::Join {
+                entry,
+                params,
+                shapes,
+            } => {
                 let mut joined = None;
                 for shape in shapes {
                     let mut value = self.field(shape, point)?;
@@ -152,17 +200,28 @@ impl Lowering<'_> {
             return Ok(value);
         }
         // a hair less, for the rounding to single precision
-        let scale = if facts.slope > 0.0 { (1.0 - 1e-6) / facts.slope } else { 1.0 };
+        let scale = if facts.slope > 0.0 {
+            (1.0 - 1e-6) / facts.slope
+        } else {
+            1.0
+        };
         self.change(code::SCALE, value, INPUT, &[scale])
     }
 
-    fn place(&mut self, placement: &Placement, shape: &Field, point: u32) -> Result<u32, CompileError> {
+    fn place(
+        &mut self,
+        placement: &Placement,
+        shape: &Field,
+        point: u32,
+    ) -> Result<u32, CompileError> {
         let mut value = match shape.node() {
             _ if placement.turns || placement.scales => {
                 let placed = self.warp(code::RIGID, point, &inverse(placement))?;
                 self.field(shape, placed)?
             }
-            Node::Primitive { entry, params } => self.leaf(entry.code, point, &centred(placement.offset, params))?,
+            Node::Primitive { entry, params } => {
+                self.leaf(entry.code, point, &centred(placement.offset, params))?
+            }
             _ => {
                 let placed = self.warp(code::OFFSET, point, &placement.offset)?;
                 self.field(shape, placed)?
@@ -174,7 +233,12 @@ impl Lowering<'_> {
         Ok(value)
     }
 
-    fn repeat(&mut self, repetition: &Repetition, shape: &Field, point: u32) -> Result<u32, CompileError> {
+    fn repeat(
+        &mut self,
+        repetition: &Repetition,
+        shape: &Field,
+        point: u32,
+    ) -> Result<u32, CompileError> {
         let bounds = shape.facts().bounds;
         let grid = grid(repetition);
         let on: [bool; 3] = std::array::from_fn(|k| repetition.repeats(k));
@@ -195,8 +259,14 @@ impl Lowering<'_> {
             });
         }
         let nearest = nearest.expect("the copy of no bits is always there");
-        let (low, high): (Vec<f64>, Vec<f64>) = (0..3).map(|k| repetition.extent(&bounds, k)).unzip();
-        self.change(code::REPEAT_WALL, nearest, point, &[low, high, grid].concat())
+        let (low, high): (Vec<f64>, Vec<f64>) =
+            (0..3).map(|k| repetition.extent(&bounds, k)).unzip();
+        self.change(
+            code::REPEAT_WALL,
+            nearest,
+            point,
+            &[low, high, grid].concat(),
+        )
     }
 
     fn polar(&mut self, polar: &Polar, shape: &Field, point: u32) -> Result<u32, CompileError> {
@@ -222,7 +292,14 @@ impl Lowering<'_> {
             return Ok(nearest);
         };
         let inner = bounds.min[0].hypot(bounds.min[2].max(-bounds.max[2]).max(0.0));
-        let wall = [polar.sector(), low, high, inner, bounds.min[1], bounds.max[1]];
+        let wall = [
+            polar.sector(),
+            low,
+            high,
+            inner,
+            bounds.min[1],
+            bounds.max[1],
+        ];
         self.change(code::POLAR_WALL, nearest, point, &wall)
     }
 
@@ -234,12 +311,24 @@ impl Lowering<'_> {
             values.push(match *step {
                 Step::Coordinate(k) => self.leaf(code::COORDINATE + u16::from(k), inside, &[])?,
                 Step::Constant(c) => self.leaf(code::CONSTANT, inside, &[c])?,
-                Step::Unary(f, x) => self.change(code::unary(f), values[x as usize], inside, &[])?,
-                Step::Binary(f, x, y) => self.pair(code::binary(f), values[x as usize], values[y as usize], &[])?,
+                Step::Unary(f, x) => {
+                    self.change(code::unary(f), values[x as usize], inside, &[])?
+                }
+                Step::Binary(f, x, y) => {
+                    self.pair(code::binary(f), values[x as usize], values[y as usize], &[])?
+                }
             });
         }
-        let value = values.last().copied().expect("Formula refuses formulas of nothing");
-        self.change(code::CONTINUE, value, point, &[&sides[..], &[formula.slope()]].concat())
+        let value = values
+            .last()
+            .copied()
+            .expect("Formula refuses formulas of nothing");
+        self.change(
+            code::CONTINUE,
+            value,
+            point,
+            &[&sides[..], &[formula.slope()]].concat(),
+        )
     }
 }
 
@@ -328,7 +417,8 @@ fn registers(steps: &[Lowered], result: u32, marks: bool) -> Result<Code, Compil
         let [a, b] = operands(step);
         for operand in [Some(a), (a != b).then_some(b)].into_iter().flatten() {
             if operand != INPUT && last_use[operand as usize] == Some(i) {
-                free[usize::from(steps[operand as usize].gives_point())].push(slot[operand as usize]);
+                free[usize::from(steps[operand as usize].gives_point())]
+                    .push(slot[operand as usize]);
             }
         }
     }
@@ -348,8 +438,18 @@ fn registers(steps: &[Lowered], result: u32, marks: bool) -> Result<Code, Compil
         .filter(|(i, _)| last_use[*i].is_some())
         .map(|(i, step)| {
             let [a, b] = operands(step).map(number);
-            Instruction { operation: step.operation, out: number(i as u32), a, b, at: step.at }
+            Instruction {
+                operation: step.operation,
+                out: number(i as u32),
+                a,
+                b,
+                at: step.at,
+            }
         })
         .collect();
-    Ok(Code { instructions, registers: needed as u16, result: number(result) })
+    Ok(Code {
+        instructions,
+        registers: needed as u16,
+        result: number(result),
+    })
 }

@@ -164,7 +164,9 @@ pub enum FieldError {
         hint: &'static str,
     },
     /// A tree deeper than [`MAX_DEPTH`].
-    #[error("the field is nested {MAX_DEPTH} operations deep, which is the limit; join many shapes with one union([...])")]
+    #[error(
+        "the field is nested {MAX_DEPTH} operations deep, which is the limit; join many shapes with one union([...])"
+    )]
     Deep,
     /// A join of no fields.
     #[error("{entry} needs at least one field")]
@@ -179,7 +181,10 @@ impl Field {
     ///
     /// # Errors
     /// Numbers out of range or that do not fit each other.
-    pub fn primitive(entry: &'static PrimitiveEntry, params: Vec<f64>) -> Result<Field, FieldError> {
+    pub fn primitive(
+        entry: &'static PrimitiveEntry,
+        params: Vec<f64>,
+    ) -> Result<Field, FieldError> {
         check_params(&entry.info, &params, entry.check)?;
         let slope = (entry.lipschitz)(&params);
         let facts = Facts {
@@ -204,26 +209,44 @@ impl Field {
         let through = through(&entry.info, child.dimension)?;
         let dimension = if entry.section { Dimension::Two } else { through };
         let bounds = (entry.bounds)(&params, &child.bounds);
-        let unfit = |reason| FieldError::Unfit { entry: entry.info.name, reason };
+        let unfit = |reason| FieldError::Unfit {
+            entry: entry.info.name,
+            reason,
+        };
         let stretch = match (entry.stretch)(&params, &bounds).map_err(unfit)? {
             Stretch::Everywhere(l) | Stretch::Within(_, l) => l,
         };
         let facts = Facts {
             bounds,
-            exactness: if entry.rigid { child.exactness } else { child.exactness.max(Exactness::Bound) },
+            exactness: if entry.rigid {
+                child.exactness
+            } else {
+                child.exactness.max(Exactness::Bound)
+            },
             slope: child.slope * stretch,
             steep: child.steep || !entry.rigid,
             dimension,
             ..child.above()?
         };
-        Ok(Field::new(Node::Map { entry, params, shape: self.clone() }, facts))
+        Ok(Field::new(
+            Node::Map {
+                entry,
+                params,
+                shape: self.clone(),
+            },
+            facts,
+        ))
     }
 
     /// This field changed by a modifier of the catalogue.
     ///
     /// # Errors
     /// Numbers out of range; a solid where a 2D shape is needed.
-    pub fn modify(&self, entry: &'static ModifyEntry, params: Vec<f64>) -> Result<Field, FieldError> {
+    pub fn modify(
+        &self,
+        entry: &'static ModifyEntry,
+        params: Vec<f64>,
+    ) -> Result<Field, FieldError> {
         check_params(&entry.info, &params, entry.check)?;
         let child = self.facts();
         let dimension = through(&entry.info, child.dimension)?;
@@ -232,22 +255,37 @@ impl Field {
             bounds: (entry.bounds)(&params, &child.bounds),
             exactness: (entry.exactness)(child.exactness),
             slope,
-            steep: child.steep || slope != 1.0 || (entry.lipschitz)(&entry.info.defaults(), 1.0) != 1.0,
+            steep: child.steep
+                || slope != 1.0
+                || (entry.lipschitz)(&entry.info.defaults(), 1.0) != 1.0,
             dimension,
             ..child.above()?
         };
-        Ok(Field::new(Node::Modify { entry, params, shape: self.clone() }, facts))
+        Ok(Field::new(
+            Node::Modify {
+                entry,
+                params,
+                shape: self.clone(),
+            },
+            facts,
+        ))
     }
 
     /// Two or more fields joined from left to right. One field alone is given back as it is.
     ///
     /// # Errors
     /// Numbers out of range, no fields, or fields of the plane mixed with solids.
-    pub fn join(entry: &'static JoinEntry, params: Vec<f64>, shapes: Vec<Field>) -> Result<Field, FieldError> {
+    pub fn join(
+        entry: &'static JoinEntry,
+        params: Vec<f64>,
+        shapes: Vec<Field>,
+    ) -> Result<Field, FieldError> {
         check_params(&entry.info, &params, entry.check)?;
         let mut rest = shapes.iter();
         let Some(first) = rest.next() else {
-            return Err(FieldError::Empty { entry: entry.info.name });
+            return Err(FieldError::Empty {
+                entry: entry.info.name,
+            });
         };
         if shapes.len() == 1 {
             return Ok(first.clone());
@@ -255,7 +293,10 @@ impl Field {
         let mut facts = first.facts().above()?;
         for shape in rest {
             let f = shape.facts();
-            if facts.dimension != f.dimension && facts.dimension != Dimension::Any && f.dimension != Dimension::Any {
+            if facts.dimension != f.dimension
+                && facts.dimension != Dimension::Any
+                && f.dimension != Dimension::Any
+            {
                 return Err(FieldError::Dimension {
                     entry: entry.info.name,
                     wanted: spoken(facts.dimension),
@@ -263,20 +304,37 @@ impl Field {
                     hint: "make solids of plane shapes with extrude(...) or revolve(...) first",
                 });
             }
-            let (x, y) = if entry.sharp { (1.0, 1.0) } else { (facts.slope, f.slope) };
+            let (x, y) = if entry.sharp {
+                (1.0, 1.0)
+            } else {
+                (facts.slope, f.slope)
+            };
             let slope = (entry.lipschitz)(&params, x, y);
             facts = Facts {
                 bounds: (entry.bounds)(&params, &facts.bounds, &f.bounds),
                 exactness: (entry.exactness)(facts.exactness, f.exactness),
                 slope,
                 steep: !entry.sharp
-                    && (facts.steep || f.steep || (entry.lipschitz)(&entry.info.defaults(), 1.0, 1.0) != 1.0),
-                dimension: if facts.dimension == Dimension::Any { f.dimension } else { facts.dimension },
+                    && (facts.steep
+                        || f.steep
+                        || (entry.lipschitz)(&entry.info.defaults(), 1.0, 1.0) != 1.0),
+                dimension: if facts.dimension == Dimension::Any {
+                    f.dimension
+                } else {
+                    facts.dimension
+                },
                 depth: facts.depth.max(f.above()?.depth),
                 nodes: facts.nodes.saturating_add(f.nodes),
             };
         }
-        Ok(Field::new(Node::Join { entry, params, shapes }, facts))
+        Ok(Field::new(
+            Node::Join {
+                entry,
+                params,
+                shapes,
+            },
+            facts,
+        ))
     }
 
     /// This field moved, turned or scaled. Placements that follow each other become one.
@@ -287,15 +345,30 @@ impl Field {
         let numbers = placement.rotation.iter().flatten().chain(&placement.offset);
         if !numbers.chain([&placement.scale]).all(|x| x.is_finite()) || placement.scale <= 0.0 {
             let reason = "the motion must be finite and its scale above 0".to_string();
-            return Err(FieldError::Unfit { entry: "place", reason });
+            return Err(FieldError::Unfit {
+                entry: "place",
+                reason,
+            });
         }
         let (placement, shape) = match self.node() {
-            Node::Place { placement: inner, shape } => (placement.after(inner), shape),
+            Node::Place {
+                placement: inner,
+                shape,
+            } => (placement.after(inner), shape),
             _ => (placement, self),
         };
         let child = shape.facts();
-        let facts = Facts { bounds: placement.bounds(&child.bounds), ..child.above()? };
-        Ok(Field::new(Node::Place { placement, shape: shape.clone() }, facts))
+        let facts = Facts {
+            bounds: placement.bounds(&child.bounds),
+            ..child.above()?
+        };
+        Ok(Field::new(
+            Node::Place {
+                placement,
+                shape: shape.clone(),
+            },
+            facts,
+        ))
     }
 
     /// Copies of this field on a grid.
@@ -304,7 +377,12 @@ impl Field {
     /// A spacing that is too small for the shape, or a shape without bounds along a repeated axis.
     pub fn repeat(&self, repetition: Repetition) -> Result<Field, FieldError> {
         let child = self.facts();
-        repetition.check(&child.bounds).map_err(|reason| FieldError::Unfit { entry: "repeat", reason })?;
+        repetition
+            .check(&child.bounds)
+            .map_err(|reason| FieldError::Unfit {
+                entry: "repeat",
+                reason,
+            })?;
         let facts = Facts {
             bounds: repetition.bounds(&child.bounds),
             exactness: child.exactness.max(Exactness::Bound),
@@ -312,7 +390,13 @@ impl Field {
             steep: false,
             ..child.above()?
         };
-        Ok(Field::new(Node::Repeat { repetition, shape: self.clone() }, facts))
+        Ok(Field::new(
+            Node::Repeat {
+                repetition,
+                shape: self.clone(),
+            },
+            facts,
+        ))
     }
 
     /// Copies of this field around the y axis.
@@ -321,7 +405,12 @@ impl Field {
     /// Too many copies for a shape that is wider than its sector.
     pub fn polar(&self, polar: Polar) -> Result<Field, FieldError> {
         let child = self.facts();
-        polar.check(&child.bounds).map_err(|reason| FieldError::Unfit { entry: "polar", reason })?;
+        polar
+            .check(&child.bounds)
+            .map_err(|reason| FieldError::Unfit {
+                entry: "polar",
+                reason,
+            })?;
         let facts = Facts {
             bounds: polar.bounds(&child.bounds),
             exactness: child.exactness.max(Exactness::Bound),
@@ -329,14 +418,24 @@ impl Field {
             steep: false,
             ..child.above()?
         };
-        Ok(Field::new(Node::Polar { polar, shape: self.clone() }, facts))
+        Ok(Field::new(
+            Node::Polar {
+                polar,
+                shape: self.clone(),
+            },
+            facts,
+        ))
     }
 
     /// A free-form formula, which brings its own proof of its slope.
     pub fn formula(formula: Arc<Formula>) -> Field {
         let facts = Facts {
             bounds: formula.bounds(),
-            exactness: if formula.is_proven() { Exactness::Bound } else { Exactness::Estimate },
+            exactness: if formula.is_proven() {
+                Exactness::Bound
+            } else {
+                Exactness::Estimate
+            },
             slope: formula.slope(),
             steep: true,
             dimension: Dimension::Three,
@@ -352,7 +451,13 @@ impl Field {
     /// A tree too deep.
     pub fn paint(&self, paint: Paint) -> Result<Field, FieldError> {
         let facts = self.facts().above()?;
-        Ok(Field::new(Node::Paint { paint, shape: self.clone() }, facts))
+        Ok(Field::new(
+            Node::Paint {
+                paint,
+                shape: self.clone(),
+            },
+            facts,
+        ))
     }
 
     /// What the node is.
@@ -395,7 +500,11 @@ impl Facts {
         if self.depth >= MAX_DEPTH {
             return Err(FieldError::Deep);
         }
-        Ok(Facts { depth: self.depth + 1, nodes: self.nodes.saturating_add(1), ..*self })
+        Ok(Facts {
+            depth: self.depth + 1,
+            nodes: self.nodes.saturating_add(1),
+            ..*self
+        })
     }
 }
 
@@ -428,18 +537,31 @@ fn through(info: &Info, shape: Dimension) -> Result<Dimension, FieldError> {
 }
 
 /// Whether a parameter array fits an entry: its length, its ranges, its relations.
-fn check_params(info: &Info, params: &[f64], relations: fn(&[f64]) -> Result<(), String>) -> Result<(), FieldError> {
+fn check_params(
+    info: &Info,
+    params: &[f64],
+    relations: fn(&[f64]) -> Result<(), String>,
+) -> Result<(), FieldError> {
     let mut at = 0;
     for p in info.params {
         let values = match p.kind {
             Kind::List(width) => {
                 let rest = params.get(at..).unwrap_or_default();
-                let (Some(&count), items) = (rest.first(), rest.get(1..).unwrap_or_default()) else {
-                    return Err(FieldError::Count { entry: info.name, given: params.len(), wanted: at + 1 });
+                let (Some(&count), items) = (rest.first(), rest.get(1..).unwrap_or_default())
+                else {
+                    return Err(FieldError::Count {
+                        entry: info.name,
+                        given: params.len(),
+                        wanted: at + 1,
+                    });
                 };
                 if count < 0.0 || count.fract() != 0.0 || items.len() != count as usize * width {
                     let wanted = at + 1 + count.max(0.0) as usize * width;
-                    return Err(FieldError::Count { entry: info.name, given: params.len(), wanted });
+                    return Err(FieldError::Count {
+                        entry: info.name,
+                        given: params.len(),
+                        wanted,
+                    });
                 }
                 at += 1;
                 at += items.len();
@@ -448,7 +570,11 @@ fn check_params(info: &Info, params: &[f64], relations: fn(&[f64]) -> Result<(),
             kind => {
                 let Some(values) = params.get(at..at + kind.len()) else {
                     let wanted = info.params.iter().map(|p| p.kind.len()).sum();
-                    return Err(FieldError::Count { entry: info.name, given: params.len(), wanted });
+                    return Err(FieldError::Count {
+                        entry: info.name,
+                        given: params.len(),
+                        wanted,
+                    });
                 };
                 at += kind.len();
                 values
@@ -458,12 +584,25 @@ fn check_params(info: &Info, params: &[f64], relations: fn(&[f64]) -> Result<(),
             // also refuses NaN
             if !(p.min <= value && value <= p.max) {
                 let (entry, param) = (info.name, p.name);
-                return Err(FieldError::Range { entry, param, value, min: p.min, max: p.max });
+                return Err(FieldError::Range {
+                    entry,
+                    param,
+                    value,
+                    min: p.min,
+                    max: p.max,
+                });
             }
         }
     }
     if at != params.len() {
-        return Err(FieldError::Count { entry: info.name, given: params.len(), wanted: at });
+        return Err(FieldError::Count {
+            entry: info.name,
+            given: params.len(),
+            wanted: at,
+        });
     }
-    relations(params).map_err(|reason| FieldError::Unfit { entry: info.name, reason })
+    relations(params).map_err(|reason| FieldError::Unfit {
+        entry: info.name,
+        reason,
+    })
 }

@@ -21,17 +21,29 @@ const IDENTITY: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.
 
 impl Placement {
     /// Where the shape was made.
-    pub const IDENTITY: Placement =
-        Placement { rotation: IDENTITY, scale: 1.0, offset: [0.0; 3], turns: false, scales: false };
+    pub const IDENTITY: Placement = Placement {
+        rotation: IDENTITY,
+        scale: 1.0,
+        offset: [0.0; 3],
+        turns: false,
+        scales: false,
+    };
 
     /// Moved by an offset.
     pub fn moved(offset: [f64; 3]) -> Self {
-        Placement { offset, ..Self::IDENTITY }
+        Placement {
+            offset,
+            ..Self::IDENTITY
+        }
     }
 
     /// Scaled about the origin; `scale` > 0.
     pub fn scaled(scale: f64) -> Self {
-        Placement { scale, scales: true, ..Self::IDENTITY }
+        Placement {
+            scale,
+            scales: true,
+            ..Self::IDENTITY
+        }
     }
 
     /// Turned about an axis through the origin, counter-clockwise when looking against the axis (radians). A zero axis
@@ -39,33 +51,67 @@ impl Placement {
     pub fn turned(axis: [f64; 3], angle: f64) -> Self {
         let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
         if length == 0.0 {
-            return Placement { turns: true, ..Self::IDENTITY };
+            return Placement {
+                turns: true,
+                ..Self::IDENTITY
+            };
         }
         let (s, c) = (0.5 * angle).sin_cos();
-        Self::quaternion([axis[0] / length * s, axis[1] / length * s, axis[2] / length * s, c])
+        Self::quaternion([
+            axis[0] / length * s,
+            axis[1] / length * s,
+            axis[2] / length * s,
+            c,
+        ])
     }
 
     /// Turned about x, then y, then z (radians).
     pub fn euler([x, y, z]: [f64; 3]) -> Self {
         let turn = |axis, angle| Self::turned(axis, angle);
-        turn([0.0, 0.0, 1.0], z).after(&turn([0.0, 1.0, 0.0], y)).after(&turn([1.0, 0.0, 0.0], x))
+        turn([0.0, 0.0, 1.0], z)
+            .after(&turn([0.0, 1.0, 0.0], y))
+            .after(&turn([1.0, 0.0, 0.0], x))
     }
 
     /// Turned by a quaternion (x, y, z, w), which is normalised first; zero turns nothing.
     pub fn quaternion(q: [f64; 4]) -> Self {
         let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let [x, y, z, w] = if length > 0.0 { q.map(|c| c / length) } else { [0.0, 0.0, 0.0, 1.0] };
+        let [x, y, z, w] = if length > 0.0 {
+            q.map(|c| c / length)
+        } else {
+            [0.0, 0.0, 0.0, 1.0]
+        };
         let rotation = [
-            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
-            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
+            [
+                1.0 - 2.0 * (y * y + z * z),
+                2.0 * (x * y - w * z),
+                2.0 * (x * z + w * y),
+            ],
+            [
+                2.0 * (x * y + w * z),
+                1.0 - 2.0 * (x * x + z * z),
+                2.0 * (y * z - w * x),
+            ],
+            [
+                2.0 * (x * z - w * y),
+                2.0 * (y * z + w * x),
+                1.0 - 2.0 * (x * x + y * y),
+            ],
         ];
-        Placement { rotation, turns: true, ..Self::IDENTITY }
+        Placement {
+            rotation,
+            turns: true,
+            ..Self::IDENTITY
+        }
     }
 
     /// First `first`, then this.
     pub fn after(&self, first: &Placement) -> Placement {
-        let row = |i: usize, j: usize| (0..3).map(|k| self.rotation[i][k] * first.rotation[k][j]).sum();
+        let row = |i: usize, j: usize| {
+            (0..3)
+                .map(|k| self.rotation[i][k] * first.rotation[k][j])
+                .sum()
+        };
         Placement {
             rotation: std::array::from_fn(|i| std::array::from_fn(|j| row(i, j))),
             scale: self.scale * first.scale,
@@ -85,7 +131,10 @@ impl Placement {
     /// The place in the shape that is seen at `p`.
     pub fn invert(&self, p: [f64; 3]) -> [f64; 3] {
         std::array::from_fn(|i| {
-            (0..3).map(|k| self.rotation[k][i] * (p[k] - self.offset[k])).sum::<f64>() / self.scale
+            (0..3)
+                .map(|k| self.rotation[k][i] * (p[k] - self.offset[k]))
+                .sum::<f64>()
+                / self.scale
         })
     }
 
@@ -94,7 +143,10 @@ impl Placement {
         if shape.is_empty() {
             return *shape;
         }
-        let mut out = Aabb { min: self.offset, max: self.offset };
+        let mut out = Aabb {
+            min: self.offset,
+            max: self.offset,
+        };
         for i in 0..3 {
             for k in 0..3 {
                 let r = self.scale * self.rotation[i][k];

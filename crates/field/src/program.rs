@@ -92,7 +92,10 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Self {
-        Limits { instructions: 200_000, params: 4_000_000 }
+        Limits {
+            instructions: 200_000,
+            params: 4_000_000,
+        }
     }
 }
 
@@ -100,13 +103,17 @@ impl Default for Limits {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CompileError {
     /// More instructions than the limit.
-    #[error("the field compiles to more than {limit} instructions: use fewer parts, or repeat(...) for many equal ones")]
+    #[error(
+        "the field compiles to more than {limit} instructions: use fewer parts, or repeat(...) for many equal ones"
+    )]
     Instructions {
         /// The limit.
         limit: usize,
     },
     /// More parameters than the limit.
-    #[error("the field has more than {limit} parameters: use shorter lists of points or fewer parts")]
+    #[error(
+        "the field has more than {limit} parameters: use shorter lists of points or fewer parts"
+    )]
     Params {
         /// The limit.
         limit: usize,

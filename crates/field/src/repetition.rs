@@ -41,17 +41,26 @@ impl Repetition {
         for k in 0..3 {
             let (c, v) = (self.spacing[k], self.vary[k]);
             if !(0.0..=1e6).contains(&c) || !(0.0..=1e6).contains(&v) {
-                return Err(format!("spacing and vary along {} must be 0 to 1e6, not {c} and {v}", axes[k]));
+                return Err(format!(
+                    "spacing and vary along {} must be 0 to 1e6, not {c} and {v}",
+                    axes[k]
+                ));
             }
             if self.count[k] > MAX_COPIES {
-                return Err(format!("{} copies along {}: at most {MAX_COPIES}", self.count[k], axes[k]));
+                return Err(format!(
+                    "{} copies along {}: at most {MAX_COPIES}",
+                    self.count[k], axes[k]
+                ));
             }
             if !self.repeats(k) {
                 continue;
             }
             let (lo, hi) = self.extent(shape, k);
             if !shape.is_empty() && !(-lo.min(0.0)).max(hi.max(0.0)).is_finite() {
-                return Err(format!("the shape has no end along {}: intersect it with a box first", axes[k]));
+                return Err(format!(
+                    "the shape has no end along {}: intersect it with a box first",
+                    axes[k]
+                ));
             }
             if !shape.is_empty() && (hi > 0.95 * c || lo < -0.95 * c) {
                 return Err(format!(
@@ -105,7 +114,12 @@ impl Polar {
     /// Smallest and largest angle (from x towards z) of a shape that does not reach the axis.
     pub(crate) fn angles(shape: &Aabb) -> Option<(f64, f64)> {
         let (min, max) = (shape.min, shape.max);
-        if shape.is_empty() || min[0] <= 0.0 || ![min[0], min[2], max[0], max[2]].iter().all(|x| x.is_finite()) {
+        if shape.is_empty()
+            || min[0] <= 0.0
+            || ![min[0], min[2], max[0], max[2]]
+                .iter()
+                .all(|x| x.is_finite())
+        {
             return None;
         }
         let low = min[2].atan2(if min[2] < 0.0 { min[0] } else { max[0] });
@@ -116,12 +130,17 @@ impl Polar {
     /// Whether two copies and a wall are enough.
     pub(crate) fn is_narrow(&self, shape: &Aabb) -> bool {
         self.count > 4
-            && Self::angles(shape).is_some_and(|(low, high)| low > -0.95 * self.sector() && high < 0.95 * self.sector())
+            && Self::angles(shape).is_some_and(|(low, high)| {
+                low > -0.95 * self.sector() && high < 0.95 * self.sector()
+            })
     }
 
     pub(crate) fn check(&self, shape: &Aabb) -> Result<(), String> {
         if self.count == 0 || self.count > MAX_COPIES {
-            return Err(format!("{} copies: allowed are 1 to {MAX_COPIES}", self.count));
+            return Err(format!(
+                "{} copies: allowed are 1 to {MAX_COPIES}",
+                self.count
+            ));
         }
         if self.count > MAX_WIDE_COPIES && !self.is_narrow(shape) {
             return Err(format!(

@@ -1,6 +1,6 @@
 //! Programs: what the compiler makes of a tree is the tree.
 
-use fearless_simd::{Level, dispatch};
+use fearless_simd::{Level, Simd, dispatch};
 use std::f64::consts::TAU;
 use zeroset_field::bounds::{Aabb, Exactness};
 use zeroset_field::catalogue::Dimension;
@@ -37,7 +37,12 @@ fn primitive(name: &str, params: &[f64]) -> Field {
 }
 
 fn join(name: &str, params: &[f64], shapes: &[Field]) -> Field {
-    Field::join(catalogue().join(name).unwrap(), params.to_vec(), shapes.to_vec()).unwrap()
+    Field::join(
+        catalogue().join(name).unwrap(),
+        params.to_vec(),
+        shapes.to_vec(),
+    )
+    .unwrap()
 }
 
 fn moved(field: &Field, x: f64, y: f64, z: f64) -> Field {
@@ -49,7 +54,9 @@ fn compiled(field: &Field) -> Program {
 }
 
 fn value(program: &Program, p: [f64; 3]) -> f64 {
-    Point::<F64>::new(program).value(v3(F64(p[0]), F64(p[1]), F64(p[2]))).0
+    Point::<F64>::new(program)
+        .value(v3(F64(p[0]), F64(p[1]), F64(p[2])))
+        .0
 }
 
 fn levels() -> Vec<Level> {
@@ -57,8 +64,8 @@ fn levels() -> Vec<Level> {
     let mut levels = vec![native, Level::baseline()];
     #[cfg(target_arch = "x86_64")]
     {
-        levels.extend(native.as_avx2().map(Level::from));
-        levels.extend(native.as_sse4_2().map(Level::from));
+        levels.extend(native.as_avx2().map(|token| token.level()));
+        levels.extend(native.as_sse4_2().map(|token| token.level()));
     }
     levels
 }
@@ -76,7 +83,10 @@ fn batch(program: &Program, level: Level, points: &[[f64; 3]]) -> (Vec<f32>, Vec
     let values = w.values().0[..n].to_vec();
     dispatch!(level, s => eval::gradients(s, program, &mut w, n));
     let g = w.gradients();
-    (values, (0..n).map(|i| [g[0].0[i], g[1].0[i], g[2].0[i]]).collect())
+    (
+        values,
+        (0..n).map(|i| [g[0].0[i], g[1].0[i], g[2].0[i]]).collect(),
+    )
 }
 
 /// A random solid of the catalogue's proven entries.
@@ -85,7 +95,9 @@ fn random_field(r: &mut Random, depth: u32) -> Field {
     loop {
         if depth == 0 || r.unit() < 0.2 {
             let solids: Vec<_> = (all.primitives.iter())
-                .filter(|e| e.info.dimension == Dimension::Three && e.exactness < Exactness::Estimate)
+                .filter(|e| {
+                    e.info.dimension == Dimension::Three && e.exactness < Exactness::Estimate
+                })
                 .collect();
             let entry = solids[r.below(solids.len())];
             return Field::primitive(entry, entry.info.defaults()).unwrap();
@@ -102,18 +114,31 @@ fn random_field(r: &mut Random, depth: u32) -> Field {
             }
             2 | 3 => {
                 let e = &all.joins[r.below(all.joins.len())];
-                let other = random_field(r, depth - 1).place(Placement::moved(r.point(1.0))).unwrap();
+                let other = random_field(r, depth - 1)
+                    .place(Placement::moved(r.point(1.0)))
+                    .unwrap();
                 Field::join(e, e.info.defaults(), vec![shape, other]).ok()
             }
-            4 => shape.place(Placement::turned(r.point(1.0), r.within(-3.0, 3.0))).ok(),
+            4 => shape
+                .place(Placement::turned(r.point(1.0), r.within(-3.0, 3.0)))
+                .ok(),
             5 => shape.place(Placement::scaled(r.within(0.3, 2.0))).ok(),
             _ => {
                 let c = r.within(2.5, 6.0);
                 let vary = [0.0, r.within(0.0, 1.0), 0.0];
-                shape.repeat(Repetition { spacing: [c, 0.0, c], count: [3, 0, 0], vary, seed: 1 }).ok()
+                shape
+                    .repeat(Repetition {
+                        spacing: [c, 0.0, c],
+                        count: [3, 0, 0],
+                        vary,
+                        seed: 1,
+                    })
+                    .ok()
             }
         };
-        if let Some(field) = made.filter(|f| f.facts().dimension == Dimension::Three && !f.facts().bounds.is_empty()) {
+        if let Some(field) =
+            made.filter(|f| f.facts().dimension == Dimension::Three && !f.facts().bounds.is_empty())
+        {
             return field;
         }
     }
@@ -126,21 +151,29 @@ fn random_trees_are_bounds_of_slope_one_and_agree_over_number_types() {
         let field = random_field(&mut r, 3);
         let program = compiled(&field);
         let bounds = program.bounds();
-        let points: Vec<[f64; 3]> = (0..BATCH).map(|_| r.point(3.0).map(|x| f64::from(x as f32))).collect();
+        let points: Vec<[f64; 3]> = (0..BATCH)
+            .map(|_| r.point(3.0).map(|x| f64::from(x as f32)))
+            .collect();
         let mut point = Point::<F64>::new(&program);
         let mut at = |p: [f64; 3]| point.value(v3(F64(p[0]), F64(p[1]), F64(p[2]))).0;
         for p in &points {
             let f = at(*p);
             assert!(f.is_finite(), "case {case}: {f} at {p:?} of {field:?}");
             if f < -1e-9 {
-                assert!(bounds.grow(1e-6).contains(*p), "case {case}: {p:?} is inside but not in {bounds:?} of {field:?}");
+                assert!(
+                    bounds.grow(1e-6).contains(*p),
+                    "case {case}: {p:?} is inside but not in {bounds:?} of {field:?}"
+                );
             }
             for h in [1e-3, 1e-1] {
                 let step = r.point(h);
                 let q = [p[0] + step[0], p[1] + step[1], p[2] + step[2]];
                 let length = step.iter().map(|x| x * x).sum::<f64>().sqrt();
                 let slope = (at(q) - f).abs() / length;
-                assert!(slope <= 1.0 + 1e-6, "case {case}: slope {slope} from {p:?} to {q:?} of {field:?}");
+                assert!(
+                    slope <= 1.0 + 1e-6,
+                    "case {case}: slope {slope} from {p:?} to {q:?} of {field:?}"
+                );
             }
         }
         for level in levels() {
@@ -148,9 +181,17 @@ fn random_trees_are_bounds_of_slope_one_and_agree_over_number_types() {
             for (i, p) in points.iter().enumerate() {
                 let f = at(*p);
                 let error = (f64::from(values[i]) - f).abs();
-                assert!(error < 2e-4 * (1.0 + f.abs()), "case {case}: {} for {f} at {p:?} of {field:?}", values[i]);
+                assert!(
+                    error < 2e-4 * (1.0 + f.abs()),
+                    "case {case}: {} for {f} at {p:?} of {field:?}",
+                    values[i]
+                );
                 let length = gradients[i].iter().map(|x| x * x).sum::<f32>().sqrt();
-                assert!(length < 1.01, "case {case}: gradient {:?} at {p:?} of {field:?}", gradients[i]);
+                assert!(
+                    length < 1.01,
+                    "case {case}: gradient {:?} at {p:?} of {field:?}",
+                    gradients[i]
+                );
             }
         }
     }
@@ -160,7 +201,9 @@ fn random_trees_are_bounds_of_slope_one_and_agree_over_number_types() {
 fn numbers_change_parameters_and_not_the_structure() {
     let make = |x: f64, r: f64, angle: f64, k: f64| {
         let ball = moved(&primitive("sphere", &[r]), x, 0.0, 0.0);
-        let turned = primitive("box", &[1.0, 1.0, 1.0]).place(Placement::turned([0.0, 1.0, 0.0], angle)).unwrap();
+        let turned = primitive("box", &[1.0, 1.0, 1.0])
+            .place(Placement::turned([0.0, 1.0, 0.0], angle))
+            .unwrap();
         compiled(&join("smooth_union", &[k], &[ball, turned]))
     };
     let (a, b) = (make(0.0, 1.0, 0.0, 0.1), make(1.0, 2.0, 1.0, 0.5));
@@ -171,15 +214,25 @@ fn numbers_change_parameters_and_not_the_structure() {
 #[test]
 fn shared_nodes_are_evaluated_once() {
     let ball = primitive("sphere", &[1.0]);
-    let shell = ball.modify(catalogue().modifier("onion").unwrap(), vec![0.1]).unwrap();
+    let shell = ball
+        .modify(catalogue().modifier("onion").unwrap(), vec![0.1])
+        .unwrap();
     let once = compiled(&join("union", &[], &[ball.clone(), shell.clone()]));
     let apart = compiled(&join("union", &[], &[primitive("sphere", &[1.0]), shell]));
-    assert_eq!(once.structure().values.instructions.len() + 1, apart.structure().values.instructions.len());
+    assert_eq!(
+        once.structure().values.instructions.len() + 1,
+        apart.structure().values.instructions.len()
+    );
 }
 
 #[test]
 fn a_move_costs_no_instruction() {
-    let ball = moved(&moved(&primitive("sphere", &[1.0]), 1.0, 2.0, 3.0), 1.0, 0.0, 0.0);
+    let ball = moved(
+        &moved(&primitive("sphere", &[1.0]), 1.0, 2.0, 3.0),
+        1.0,
+        0.0,
+        0.0,
+    );
     let program = compiled(&ball);
     assert_eq!(program.structure().values.instructions.len(), 1);
     assert!((value(&program, [2.0, 2.0, 5.0]) - 1.0).abs() < 1e-12);
@@ -187,15 +240,23 @@ fn a_move_costs_no_instruction() {
 
 #[test]
 fn registers_are_reused() {
-    let balls: Vec<Field> = (0..100).map(|i| moved(&primitive("sphere", &[0.4]), f64::from(i), 0.0, 0.0)).collect();
-    let code = &compiled(&join("union", &[], &balls)).structure().values.clone();
+    let balls: Vec<Field> = (0..100)
+        .map(|i| moved(&primitive("sphere", &[0.4]), f64::from(i), 0.0, 0.0))
+        .collect();
+    let code = &compiled(&join("union", &[], &balls))
+        .structure()
+        .values
+        .clone();
     assert_eq!(code.instructions.len(), 199);
     assert!(code.registers <= 6, "{} registers", code.registers);
 }
 
 /// All copies as one union: what a repetition must not overestimate, and equal near them.
 fn copies(shape: &Field, placements: Vec<Placement>) -> Program {
-    let shapes: Vec<Field> = placements.iter().map(|p| shape.place(*p).unwrap()).collect();
+    let shapes: Vec<Field> = placements
+        .iter()
+        .map(|p| shape.place(*p).unwrap())
+        .collect();
     compiled(&join("union", &[], &shapes))
 }
 
@@ -204,7 +265,12 @@ fn repetitions_never_overestimate_and_are_true_near_the_shapes() {
     let mut r = Random(0x5eed_0002);
     let shape = moved(&primitive("box", &[0.6, 1.0, 1.1]), 0.2, 0.3, -0.1);
     for count in [2, 3, 6, 7] {
-        let repetition = Repetition { spacing: [1.0, 0.0, 1.5], count: [count, 0, 3], vary: [0.0; 3], seed: 0 };
+        let repetition = Repetition {
+            spacing: [1.0, 0.0, 1.5],
+            count: [count, 0, 3],
+            vary: [0.0; 3],
+            seed: 0,
+        };
         let repeated = compiled(&shape.repeat(repetition).unwrap());
         let first = -0.5 * f64::from(count - 1);
         let cells = (0..count).flat_map(|i| (0..3).map(move |k| (i, k)));
@@ -214,7 +280,10 @@ fn repetitions_never_overestimate_and_are_true_near_the_shapes() {
             let p = r.point(5.0);
             let (f, truth) = (value(&repeated, p), value(&union, p));
             assert!(f <= truth + 1e-6, "{f} for {truth} at {p:?}");
-            assert!((f - truth).abs() < 1e-6 || f > 0.35 || truth < 0.0, "{f} for {truth} at {p:?}");
+            assert!(
+                (f - truth).abs() < 1e-6 || f > 0.35 || truth < 0.0,
+                "{f} for {truth} at {p:?}"
+            );
             assert_eq!(f < 0.0, truth < 0.0, "{f} for {truth} at {p:?}");
         }
     }
@@ -226,13 +295,17 @@ fn polar_copies_never_overestimate() {
     let shape = moved(&primitive("box", &[0.5, 0.4, 0.5]), 2.0, 0.1, 0.1);
     for count in [1, 2, 3, 5, 12, 20] {
         let polar = compiled(&shape.polar(Polar { count }).unwrap());
-        let turn = |i: u32| Placement::turned([0.0, 1.0, 0.0], -f64::from(i) * TAU / f64::from(count));
+        let turn =
+            |i: u32| Placement::turned([0.0, 1.0, 0.0], -f64::from(i) * TAU / f64::from(count));
         let union = copies(&shape, (0..count).map(turn).collect());
         for _ in 0..4000 {
             let p = r.point(3.5);
             let (f, truth) = (value(&polar, p), value(&union, p));
             assert!(f <= truth + 1e-6, "{count}: {f} for {truth} at {p:?}");
-            assert!(f >= truth - 1e-6 || f > 0.05, "{count}: {f} for {truth} at {p:?}");
+            assert!(
+                f >= truth - 1e-6 || f > 0.05,
+                "{count}: {f} for {truth} at {p:?}"
+            );
         }
     }
 }
@@ -242,7 +315,14 @@ fn varied_copies_have_slope_one_and_stay_in_their_box() {
     let mut r = Random(0x5eed_0004);
     let shape = primitive("box", &[0.7, 2.0, 0.7]);
     let vary = [0.1, 1.0, 0.1];
-    let field = shape.repeat(Repetition { spacing: [1.0, 0.0, 1.0], count: [5, 0, 0], vary, seed: 7 }).unwrap();
+    let field = shape
+        .repeat(Repetition {
+            spacing: [1.0, 0.0, 1.0],
+            count: [5, 0, 0],
+            vary,
+            seed: 7,
+        })
+        .unwrap();
     assert_eq!(field.facts().bounds.max[1], 2.0);
     let program = compiled(&field);
     let mut heights = std::collections::BTreeSet::new();
@@ -251,7 +331,10 @@ fn varied_copies_have_slope_one_and_stay_in_their_box() {
         let step = r.point(0.05);
         let q = [p[0] + step[0], p[1] + step[1], p[2] + step[2]];
         let length = step.iter().map(|x| x * x).sum::<f64>().sqrt();
-        assert!((value(&program, p) - value(&program, q)).abs() <= length * (1.0 + 1e-6), "{p:?} {q:?}");
+        assert!(
+            (value(&program, p) - value(&program, q)).abs() <= length * (1.0 + 1e-6),
+            "{p:?} {q:?}"
+        );
         if value(&program, p) < 0.0 {
             assert!(field.facts().bounds.contains(p));
             heights.insert((p[1] * 10.0) as i64);
@@ -262,15 +345,27 @@ fn varied_copies_have_slope_one_and_stay_in_their_box() {
 
 #[test]
 fn marks_follow_the_winning_side_and_blend_in_smooth_joins() {
-    let red = moved(&primitive("sphere", &[1.0]), -1.0, 0.0, 0.0).paint(Paint::Material(3)).unwrap();
-    let blue = moved(&primitive("sphere", &[1.0]), 1.0, 0.0, 0.0).paint(Paint::Material(5)).unwrap();
+    let red = moved(&primitive("sphere", &[1.0]), -1.0, 0.0, 0.0)
+        .paint(Paint::Material(3))
+        .unwrap();
+    let blue = moved(&primitive("sphere", &[1.0]), 1.0, 0.0, 0.0)
+        .paint(Paint::Material(5))
+        .unwrap();
     let plain = moved(&primitive("sphere", &[0.5]), 0.0, 5.0, 0.0);
-    let blend = join("smooth_union", &[0.5], &[red, blue, plain]).paint(Paint::Material(9)).unwrap();
+    let blend = join("smooth_union", &[0.5], &[red, blue, plain])
+        .paint(Paint::Material(9))
+        .unwrap();
     let floor = moved(&primitive("plane", &[]), 0.0, -3.0, 0.0);
     let object = |f: &Field, i| f.paint(Paint::Object(i)).unwrap();
     let program = compiled(&join("union", &[], &[object(&blend, 0), object(&floor, 1)]));
     let mut w = Workspace::new(&program);
-    let points = [[-2.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.3, 0.0], [0.0, 5.5, 0.0], [0.0, -3.0, 0.0]];
+    let points = [
+        [-2.0, 0.0, 0.0],
+        [2.0, 0.0, 0.0],
+        [0.0, 0.3, 0.0],
+        [0.0, 5.5, 0.0],
+        [0.0, -3.0, 0.0],
+    ];
     for (i, p) in points.iter().enumerate() {
         for k in 0..3 {
             w.points_mut()[k].0[i] = p[k];
@@ -280,9 +375,16 @@ fn marks_follow_the_winning_side_and_blend_in_smooth_joins() {
         dispatch!(level, s => eval::marks(s, &program, &mut w, points.len()));
         let m = w.marks();
         assert_eq!(m.object.0[..5], [0.0, 0.0, 0.0, 0.0, 1.0]);
-        assert_eq!((m.first.0[0], m.first.0[1], m.first.0[3], m.first.0[4]), (3.0, 5.0, 9.0, -1.0));
+        assert_eq!(
+            (m.first.0[0], m.first.0[1], m.first.0[3], m.first.0[4]),
+            (3.0, 5.0, 9.0, -1.0)
+        );
         assert_eq!(m.share.0[0], 0.0);
-        assert!((m.share.0[2] - 0.5).abs() < 1e-4, "half and half in the middle: {}", m.share.0[2]);
+        assert!(
+            (m.share.0[2] - 0.5).abs() < 1e-4,
+            "half and half in the middle: {}",
+            m.share.0[2]
+        );
         assert_eq!(m.first.0[2] + m.second.0[2], 8.0);
     }
 }
@@ -291,15 +393,27 @@ fn marks_follow_the_winning_side_and_blend_in_smooth_joins() {
 fn limits_and_flat_fields_are_refused() {
     let mut field = primitive("sphere", &[1.0]);
     for i in 0..40 {
-        field = join("union", &[], &[field.clone(), moved(&field, f64::from(i) + 1.0, 0.0, 0.0)]);
+        field = join(
+            "union",
+            &[],
+            &[field.clone(), moved(&field, f64::from(i) + 1.0, 0.0, 0.0)],
+        );
     }
-    let limits = Limits { instructions: 1000, ..Limits::default() };
-    assert_eq!(Program::compile(&field, &limits).unwrap_err(), CompileError::Instructions { limit: 1000 });
+    let limits = Limits {
+        instructions: 1000,
+        ..Limits::default()
+    };
+    assert_eq!(
+        Program::compile(&field, &limits).unwrap_err(),
+        CompileError::Instructions { limit: 1000 }
+    );
 }
 
 #[test]
 fn boxes_of_placed_fields_hold_them() {
-    let field = primitive("box", &[1.0, 2.0, 3.0]).place(Placement::euler([0.3, 0.5, 0.7])).unwrap();
+    let field = primitive("box", &[1.0, 2.0, 3.0])
+        .place(Placement::euler([0.3, 0.5, 0.7]))
+        .unwrap();
     let bounds = field.facts().bounds;
     let program = compiled(&field);
     let mut r = Random(0x5eed_0005);
@@ -307,5 +421,8 @@ fn boxes_of_placed_fields_hold_them() {
         let p = r.point(3.0);
         assert!(value(&program, p) > 0.0 || bounds.contains(p));
     }
-    assert!(Aabb::centred([2.0; 3]).intersect(&bounds) == bounds, "{bounds:?} is tight");
+    assert!(
+        Aabb::centred([2.0; 3]).intersect(&bounds) == bounds,
+        "{bounds:?} is tight"
+    );
 }

@@ -114,9 +114,15 @@ pub fn catalogue() -> &'static Catalogue {
             modifiers: crate::each_modify!(gather modifier),
             joins: crate::each_join!(gather join),
         };
-        all.primitives.iter_mut().zip(0..).for_each(|(e, i)| e.code = i);
+        all.primitives
+            .iter_mut()
+            .zip(0..)
+            .for_each(|(e, i)| e.code = i);
         all.maps.iter_mut().zip(0..).for_each(|(e, i)| e.code = i);
-        all.modifiers.iter_mut().zip(0..).for_each(|(e, i)| e.code = i);
+        all.modifiers
+            .iter_mut()
+            .zip(0..)
+            .for_each(|(e, i)| e.code = i);
         all.joins.iter_mut().zip(0..).for_each(|(e, i)| e.code = i);
         all
     });
@@ -146,7 +152,10 @@ impl Catalogue {
 
     /// The sharp union, which is always there.
     pub fn union() -> &'static JoinEntry {
-        static UNION: LazyLock<JoinEntry> = LazyLock::new(|| JoinEntry { code: 0, ..join::<super::join::Union>() });
+        static UNION: LazyLock<JoinEntry> = LazyLock::new(|| JoinEntry {
+            code: 0,
+            ..join::<super::join::Union>()
+        });
         &UNION
     }
 

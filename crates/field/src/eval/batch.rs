@@ -49,13 +49,17 @@ impl Workspace {
     /// The points to evaluate at: x, y and z.
     #[inline(always)]
     pub fn points_mut(&mut self) -> &mut [Lane; 3] {
-        (&mut self.lanes[..3]).try_into().expect("a workspace has three lanes at least")
+        (&mut self.lanes[..3])
+            .try_into()
+            .expect("a workspace has three lanes at least")
     }
 
     /// The points to evaluate at.
     #[inline(always)]
     pub fn points(&self) -> &[Lane; 3] {
-        (&self.lanes[..3]).try_into().expect("a workspace has three lanes at least")
+        (&self.lanes[..3])
+            .try_into()
+            .expect("a workspace has three lanes at least")
     }
 
     /// What [`values`] found.
@@ -73,7 +77,9 @@ impl Workspace {
     /// What [`gradients`] found: the derivatives along x, y and z.
     #[inline(always)]
     pub fn gradients(&self) -> &[Lane; 3] {
-        (&self.duals[self.result_dual + 1..][..3]).try_into().expect("a result has three derivatives")
+        (&self.duals[self.result_dual + 1..][..3])
+            .try_into()
+            .expect("a result has three derivatives")
     }
 }
 
@@ -81,7 +87,13 @@ impl Workspace {
 /// so the points behind the last one must be numbers too.
 #[inline(always)]
 pub fn values<S: Simd>(s: S, program: &Program, w: &mut Workspace, n: usize) {
-    run_values(s.level(), &program.structure.values, &program.params, &mut w.lanes, n);
+    run_values(
+        s.level(),
+        &program.structure.values,
+        &program.params,
+        &mut w.lanes,
+        n,
+    );
 }
 
 /// As [`values`], with the gradient. The points are those of [`Workspace::points_mut`].
@@ -89,10 +101,18 @@ pub fn gradients<S: Simd>(s: S, program: &Program, w: &mut Workspace, n: usize) 
     for k in 0..3 {
         w.duals[4 * k] = w.lanes[k];
         for j in 0..3 {
-            w.duals[4 * k + 1 + j].0.fill(if j == k { 1.0 } else { 0.0 });
+            w.duals[4 * k + 1 + j]
+                .0
+                .fill(if j == k { 1.0 } else { 0.0 });
         }
     }
-    run_gradients(s.level(), &program.structure.values, &program.params, &mut w.duals, n);
+    run_gradients(
+        s.level(),
+        &program.structure.values,
+        &program.params,
+        &mut w.duals,
+        n,
+    );
 }
 
 // Not generic, so that the kernels are compiled once, in this crate.
@@ -150,7 +170,14 @@ impl<S: Simd> Slot<S> for Dual<Lanes<S>> {
     const WIDTH: usize = 4;
     #[inline(always)]
     fn load(s: S, lanes: &[Lane], i: usize) -> Self {
-        Dual { v: load(s, &lanes[0], i), d: [load(s, &lanes[1], i), load(s, &lanes[2], i), load(s, &lanes[3], i)] }
+        Dual {
+            v: load(s, &lanes[0], i),
+            d: [
+                load(s, &lanes[1], i),
+                load(s, &lanes[2], i),
+                load(s, &lanes[3], i),
+            ],
+        }
     }
     #[inline(always)]
     fn store(self, lanes: &mut [Lane], i: usize) {
@@ -164,7 +191,11 @@ impl<S: Simd> Slot<S> for Dual<Lanes<S>> {
 #[inline(always)]
 fn load3<S: Simd, N: Slot<S>>(s: S, lanes: &[Lane], i: usize) -> Vec3<N> {
     let w = N::WIDTH;
-    v3(N::load(s, &lanes[..w], i), N::load(s, &lanes[w..2 * w], i), N::load(s, &lanes[2 * w..3 * w], i))
+    v3(
+        N::load(s, &lanes[..w], i),
+        N::load(s, &lanes[w..2 * w], i),
+        N::load(s, &lanes[2 * w..3 * w], i),
+    )
 }
 
 pub(super) type Kernel<S> = fn(S, &Instruction, &[f32], &mut [Lane], usize);
@@ -177,9 +208,24 @@ fn split<const M: usize>(lanes: &mut [Lane], spans: [(u16, usize); M]) -> [&mut 
 }
 
 #[inline(never)]
-fn leaf<S: Simd, N: Slot<S>, E: Leaf>(s: S, i: &Instruction, params: &[f32], lanes: &mut [Lane], n: usize) {
-    let [out, p] = split(lanes, [(i.out * N::WIDTH as u16, N::WIDTH), (i.a * N::WIDTH as u16, 3 * N::WIDTH)]);
-    let a = Args { store: params, at: i.at as usize };
+fn leaf<S: Simd, N: Slot<S>, E: Leaf>(
+    s: S,
+    i: &Instruction,
+    params: &[f32],
+    lanes: &mut [Lane],
+    n: usize,
+) {
+    let [out, p] = split(
+        lanes,
+        [
+            (i.out * N::WIDTH as u16, N::WIDTH),
+            (i.a * N::WIDTH as u16, 3 * N::WIDTH),
+        ],
+    );
+    let a = Args {
+        store: params,
+        at: i.at as usize,
+    };
     s.vectorize(
         #[inline(always)]
         || {
@@ -191,10 +237,19 @@ fn leaf<S: Simd, N: Slot<S>, E: Leaf>(s: S, i: &Instruction, params: &[f32], lan
 }
 
 #[inline(never)]
-fn warp<S: Simd, N: Slot<S>, E: Warp>(s: S, i: &Instruction, params: &[f32], lanes: &mut [Lane], n: usize) {
+fn warp<S: Simd, N: Slot<S>, E: Warp>(
+    s: S,
+    i: &Instruction,
+    params: &[f32],
+    lanes: &mut [Lane],
+    n: usize,
+) {
     let w = N::WIDTH;
     let [out, p] = split(lanes, [(i.out * w as u16, 3 * w), (i.a * w as u16, 3 * w)]);
-    let a = Args { store: params, at: i.at as usize };
+    let a = Args {
+        store: params,
+        at: i.at as usize,
+    };
     s.vectorize(
         #[inline(always)]
         || {
@@ -209,10 +264,26 @@ fn warp<S: Simd, N: Slot<S>, E: Warp>(s: S, i: &Instruction, params: &[f32], lan
 }
 
 #[inline(never)]
-fn change<S: Simd, N: Slot<S>, E: Change>(s: S, i: &Instruction, params: &[f32], lanes: &mut [Lane], n: usize) {
+fn change<S: Simd, N: Slot<S>, E: Change>(
+    s: S,
+    i: &Instruction,
+    params: &[f32],
+    lanes: &mut [Lane],
+    n: usize,
+) {
     let w = N::WIDTH;
-    let [out, d, p] = split(lanes, [(i.out * w as u16, w), (i.a * w as u16, w), (i.b * w as u16, 3 * w)]);
-    let a = Args { store: params, at: i.at as usize };
+    let [out, d, p] = split(
+        lanes,
+        [
+            (i.out * w as u16, w),
+            (i.a * w as u16, w),
+            (i.b * w as u16, 3 * w),
+        ],
+    );
+    let a = Args {
+        store: params,
+        at: i.at as usize,
+    };
     s.vectorize(
         #[inline(always)]
         || {
@@ -224,10 +295,26 @@ fn change<S: Simd, N: Slot<S>, E: Change>(s: S, i: &Instruction, params: &[f32],
 }
 
 #[inline(never)]
-fn pair<S: Simd, N: Slot<S>, E: Pair>(s: S, i: &Instruction, params: &[f32], lanes: &mut [Lane], n: usize) {
+fn pair<S: Simd, N: Slot<S>, E: Pair>(
+    s: S,
+    i: &Instruction,
+    params: &[f32],
+    lanes: &mut [Lane],
+    n: usize,
+) {
     let w = N::WIDTH;
-    let [out, x, y] = split(lanes, [(i.out * w as u16, w), (i.a * w as u16, w), (i.b * w as u16, w)]);
-    let a = Args { store: params, at: i.at as usize };
+    let [out, x, y] = split(
+        lanes,
+        [
+            (i.out * w as u16, w),
+            (i.a * w as u16, w),
+            (i.b * w as u16, w),
+        ],
+    );
+    let a = Args {
+        store: params,
+        at: i.at as usize,
+    };
     s.vectorize(
         #[inline(always)]
         || {
@@ -239,7 +326,13 @@ fn pair<S: Simd, N: Slot<S>, E: Pair>(s: S, i: &Instruction, params: &[f32], lan
 }
 
 #[inline(never)]
-fn mark<S: Simd, N: Slot<S>>(_s: S, i: &Instruction, _params: &[f32], lanes: &mut [Lane], _n: usize) {
+fn mark<S: Simd, N: Slot<S>>(
+    _s: S,
+    i: &Instruction,
+    _params: &[f32],
+    lanes: &mut [Lane],
+    _n: usize,
+) {
     let w = N::WIDTH;
     let [out, x] = split(lanes, [(i.out * w as u16, w), (i.a * w as u16, w)]);
     out.copy_from_slice(x);

@@ -28,8 +28,12 @@ pub struct Marks {
 }
 
 impl Marks {
-    const NONE: Marks =
-        Marks { object: Lane([-1.0; BATCH]), first: Lane([-1.0; BATCH]), second: Lane([-1.0; BATCH]), share: Lane::ZERO };
+    const NONE: Marks = Marks {
+        object: Lane([-1.0; BATCH]),
+        first: Lane([-1.0; BATCH]),
+        second: Lane([-1.0; BATCH]),
+        share: Lane::ZERO,
+    };
 }
 
 /// Marks of every value register.
@@ -84,7 +88,11 @@ fn run<S: Simd>(s: S, code: &Code, params: &[f32], w: &mut Workspace, n: usize) 
             Operation::Mark(kind, number) => {
                 w.marks.marks[out] = w.marks.marks[a];
                 let m = &mut w.marks.marks[out];
-                let lane = if kind == 0 { &mut m.first } else { &mut m.object };
+                let lane = if kind == 0 {
+                    &mut m.first
+                } else {
+                    &mut m.object
+                };
                 for x in &mut lane.0[..n] {
                     *x = if *x < 0.0 { f32::from(number) } else { *x };
                 }
@@ -101,7 +109,11 @@ fn join(lanes: &mut MarkLanes, out: usize, a: usize, b: usize, n: usize) {
         .expect("the compiler gives operands and results different registers");
     for k in 0..n {
         let w = lanes.share.0[k];
-        let ((near, far), w) = if w <= 0.5 { ((&*a, &*b), w) } else { ((&*b, &*a), 1.0 - w) };
+        let ((near, far), w) = if w <= 0.5 {
+            ((&*a, &*b), w)
+        } else {
+            ((&*b, &*a), 1.0 - w)
+        };
         out.object.0[k] = near.object.0[k];
         let first = near.first.0[k];
         let mut weights = (1.0 - w) * (1.0 - near.share.0[k]);
@@ -115,11 +127,18 @@ fn join(lanes: &mut MarkLanes, out: usize, a: usize, b: usize, n: usize) {
         } else if weight > rest {
             (second, rest) = (other, weight);
         }
-        let (first, second, weights, rest) =
-            if rest > weights { (second, first, rest, weights) } else { (first, second, weights, rest) };
+        let (first, second, weights, rest) = if rest > weights {
+            (second, first, rest, weights)
+        } else {
+            (first, second, weights, rest)
+        };
         out.first.0[k] = first;
         out.second.0[k] = second;
-        out.share.0[k] = if rest > 0.0 { rest / (weights + rest) } else { 0.0 };
+        out.share.0[k] = if rest > 0.0 {
+            rest / (weights + rest)
+        } else {
+            0.0
+        };
     }
 }
 
@@ -127,9 +146,19 @@ fn join(lanes: &mut MarkLanes, out: usize, a: usize, b: usize, n: usize) {
 type Share<S> = fn(S, &Instruction, &[f32], &[Lane], &mut Lane, usize);
 
 #[inline(never)]
-fn share<S: Simd, E: Pair>(s: S, i: &Instruction, params: &[f32], lanes: &[Lane], out: &mut Lane, n: usize) {
+fn share<S: Simd, E: Pair>(
+    s: S,
+    i: &Instruction,
+    params: &[f32],
+    lanes: &[Lane],
+    out: &mut Lane,
+    n: usize,
+) {
     let (x, y) = (&lanes[usize::from(i.a)], &lanes[usize::from(i.b)]);
-    let a = Args { store: params, at: i.at as usize };
+    let a = Args {
+        store: params,
+        at: i.at as usize,
+    };
     s.vectorize(
         #[inline(always)]
         || {

@@ -15,7 +15,10 @@ pub struct Point<'p, R> {
 impl<'p, R: Real<Store = [f32]> + 'static> Point<'p, R> {
     /// An evaluator of `program`.
     pub fn new(program: &'p Program) -> Self {
-        Point { program, registers: Vec::new() }
+        Point {
+            program,
+            registers: Vec::new(),
+        }
     }
 
     /// The value at `p`.
@@ -38,11 +41,18 @@ type Step<R> = fn(&Instruction, &[f32], &mut [R]);
 #[inline(always)]
 fn point<R: Real>(registers: &[R], at: u16) -> Vec3<R> {
     let at = usize::from(at);
-    Vec3 { x: registers[at], y: registers[at + 1], z: registers[at + 2] }
+    Vec3 {
+        x: registers[at],
+        y: registers[at + 1],
+        z: registers[at + 2],
+    }
 }
 
 fn args<'a, R: Real<Store = [f32]>>(i: &Instruction, params: &'a [f32]) -> Args<'a, R> {
-    Args { store: params, at: i.at as usize }
+    Args {
+        store: params,
+        at: i.at as usize,
+    }
 }
 
 fn leaf<R: Real<Store = [f32]>, E: Leaf>(i: &Instruction, params: &[f32], r: &mut [R]) {

@@ -77,7 +77,9 @@ impl<R: Real> Grid<'_, R> {
     #[inline(always)]
     fn base(&self, x: R, k: usize) -> R {
         let u = x / self.0.get(3 + k) - self.0.get(6 + k);
-        u.floor().max(self.0.get(9 + k)).min(self.0.get(12 + k) - 1.0)
+        u.floor()
+            .max(self.0.get(9 + k))
+            .min(self.0.get(12 + k) - 1.0)
     }
 
     /// Centre of a cell along an axis.

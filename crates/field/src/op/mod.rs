@@ -43,7 +43,11 @@ pub struct Centred<E>(PhantomData<E>);
 impl<E: Primitive> Leaf for Centred<E> {
     #[inline(always)]
     fn leaf<R: Real>(p: Vec3<R>, a: Args<'_, R>) -> R {
-        let q = Vec3 { x: p.x - a.get(0), y: p.y - a.get(1), z: p.z - a.get(2) };
+        let q = Vec3 {
+            x: p.x - a.get(0),
+            y: p.y - a.get(1),
+            z: p.z - a.get(2),
+        };
         E::distance(q, a.list(3))
     }
 }
@@ -151,7 +155,8 @@ macro_rules! with_own_pairs {
 }
 
 pub(crate) use {
-    each_change, each_leaf, each_pair, each_warp, with_own_changes, with_own_leaves, with_own_pairs, with_own_warps,
+    each_change, each_leaf, each_pair, each_warp, with_own_changes, with_own_leaves,
+    with_own_pairs, with_own_warps,
 };
 
 /// Codes of the operations that only the compiler emits: their places behind the catalogue's in the lists above.
