@@ -33,8 +33,6 @@ pub struct MapEntry {
     pub section: bool,
     /// Whether an exact distance stays exact.
     pub rigid: bool,
-    /// Whether it makes a 2D shape of a solid.
-    pub section: bool,
     /// More parameter sets worth a proof.
     pub samples: &'static [&'static [f64]],
     /// Place in the list: the instruction's code.
@@ -188,7 +186,6 @@ fn map<E: Map>() -> MapEntry {
         info: E::INFO,
         section: E::SECTION,
         rigid: E::RIGID,
-        section: E::SECTION,
         samples: E::SAMPLES,
         code: 0,
         stretch: E::stretch,
