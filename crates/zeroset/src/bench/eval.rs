@@ -1,0 +1,79 @@
+//! `bench eval`: one program over SIMD batches and one point at a time, on one thread.
+
+use fearless_simd::{Level, dispatch};
+use serde::Serialize;
+use std::hint::black_box;
+use std::time::Instant;
+use zeroset_field::eval::{self, BATCH, Point, Workspace};
+use zeroset_field::number::v3;
+use zeroset_field::program::Program;
+
+/// What `bench eval` measures. Times are the best of several runs, in nanoseconds a point.
+#[derive(Clone, Debug, Serialize)]
+pub struct Eval {
+    /// SIMD level that was used.
+    pub level: String,
+    /// Instructions of the program.
+    pub instructions: usize,
+    /// Batches.
+    pub ns_per_point: f64,
+    /// Batches with gradients.
+    pub ns_per_gradient: f64,
+    /// One point of `f32` at a time, the same program.
+    pub ns_per_point_scalar: f64,
+    /// `ns_per_point_scalar / ns_per_point`
+    pub simd_over_scalar: f64,
+}
+
+const RUNS: usize = 9;
+const BATCHES: usize = 2000;
+
+/// Measures a program at points spread over the box `[-3, 3]^3`.
+pub fn eval(program: &Program) -> Eval {
+    let level = Level::new();
+    let mut w = Workspace::new(program);
+    let spread = |i: usize, step: f64| (6.0 * (i as f64 * step).fract() - 3.0) as f32;
+    for i in 0..BATCH {
+        for (k, step) in [0.754_877_67, 0.569_840_29, 0.430_159_7].into_iter().enumerate() {
+            w.points_mut()[k].0[i] = spread(i, step);
+        }
+    }
+    let points: Vec<_> = (0..BATCH)
+        .map(|i| v3(w.points()[0].0[i], w.points()[1].0[i], w.points()[2].0[i]))
+        .collect();
+    let mut one = Point::<f32>::new(program);
+    let (mut values, mut gradients, mut scalar) = (f64::MAX, f64::MAX, f64::MAX);
+    // in turn, so that a machine that changes its pace changes all three
+    for _ in 0..RUNS {
+        values = values.min(per_point(BATCHES, || {
+            dispatch!(level, s => eval::values(s, program, &mut w, BATCH));
+            black_box(w.values());
+        }));
+        gradients = gradients.min(per_point(BATCHES / 4, || {
+            dispatch!(level, s => eval::gradients(s, program, &mut w, BATCH));
+            black_box(w.gradients());
+        }));
+        scalar = scalar.min(per_point(BATCHES / 16, || {
+            for &p in &points {
+                black_box(one.value(black_box(p)));
+            }
+        }));
+    }
+    Eval {
+        level: format!("{level:?}"),
+        instructions: program.structure().values.instructions.len(),
+        ns_per_point: values,
+        ns_per_gradient: gradients,
+        ns_per_point_scalar: scalar,
+        simd_over_scalar: scalar / values,
+    }
+}
+
+/// Nanoseconds a point of `batches` runs over a batch each.
+fn per_point(batches: usize, mut run: impl FnMut()) -> f64 {
+    let start = Instant::now();
+    for _ in 0..batches {
+        run();
+    }
+    start.elapsed().as_secs_f64() * 1e9 / (batches * BATCH) as f64
+}
