@@ -1,0 +1,73 @@
+//! PNG: 8 or 16 bits a channel, sRGB, with notes in text chunks.
+
+use super::{Notes, SOFTWARE};
+use crate::picture::Picture;
+use crate::tone;
+use ::png::{BitDepth, ColorType, Encoder, EncodingError, SrgbRenderingIntent};
+use std::io::{self, Write};
+
+/// Bits a channel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Depth {
+    /// 256 levels, dithered.
+    #[default]
+    Eight,
+    /// 65,536 levels.
+    Sixteen,
+}
+
+/// Writes a picture.
+///
+/// # Errors
+/// What the writer gives; a picture without pixels or with a side of more than 2^31 - 1, which PNG cannot hold.
+pub fn write(writer: impl Write, picture: &Picture, depth: Depth, notes: &Notes) -> io::Result<()> {
+    let mut encoder = Encoder::new(writer, picture.width(), picture.height());
+    encoder.set_color(ColorType::Rgb);
+    encoder.set_depth(match depth {
+        Depth::Eight => BitDepth::Eight,
+        Depth::Sixteen => BitDepth::Sixteen,
+    });
+    encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
+    encoder
+        .add_text_chunk("Software".to_owned(), SOFTWARE.to_owned())
+        .map_err(plain)?;
+    let title = ("Title", notes.title.as_str());
+    for (key, text) in [title]
+        .into_iter()
+        .chain(notes.entries.iter().map(|(k, t)| (k.as_str(), t.as_str())))
+    {
+        if text.is_ascii() {
+            encoder
+                .add_text_chunk(key.to_owned(), text.to_owned())
+                .map_err(plain)?;
+        } else {
+            encoder
+                .add_itxt_chunk(key.to_owned(), text.to_owned())
+                .map_err(plain)?;
+        }
+    }
+    let mut writer = encoder.write_header().map_err(plain)?;
+    let mut stream = writer.stream_writer().map_err(plain)?;
+    let mut line = Vec::with_capacity(picture.width() as usize * 6);
+    for (y, row) in (0..).zip(picture.pixels().chunks_exact(picture.width() as usize)) {
+        line.clear();
+        for (x, pixel) in (0..).zip(row) {
+            for &channel in pixel {
+                match depth {
+                    Depth::Eight => line.push(tone::quantise8(channel, x, y)),
+                    Depth::Sixteen => line.extend(tone::quantise16(channel).to_be_bytes()),
+                }
+            }
+        }
+        stream.write_all(&line)?;
+    }
+    stream.finish().map_err(plain)?;
+    writer.finish().map_err(plain)
+}
+
+fn plain(error: EncodingError) -> io::Error {
+    match error {
+        EncodingError::IoError(error) => error,
+        other => io::Error::new(io::ErrorKind::InvalidInput, other),
+    }
+}

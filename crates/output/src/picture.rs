@@ -1,0 +1,97 @@
+//! Pictures: what a screen shows.
+
+use crate::tone;
+use zeroset_scene::film::{Film, Plane};
+
+/// A picture as a screen shows it: sRGB values between 0 and 1 (IEC 61966-2-1), row by row from the top left.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    width: u32,
+    height: u32,
+    pixels: Vec<[f32; 3]>,
+}
+
+impl Picture {
+    /// A picture of one colour. The caller has checked the size against its limits.
+    pub fn filled(width: u32, height: u32, colour: [f32; 3]) -> Picture {
+        Picture {
+            width,
+            height,
+            pixels: vec![colour; width as usize * height as usize],
+        }
+    }
+
+    /// A picture from a function of column and row. The caller has checked the size against its limits.
+    pub fn from_fn(
+        width: u32,
+        height: u32,
+        mut colour: impl FnMut(u32, u32) -> [f32; 3],
+    ) -> Picture {
+        let mut pixels = Vec::with_capacity(width as usize * height as usize);
+        for y in 0..height {
+            pixels.extend((0..width).map(|x| colour(x, y)));
+        }
+        Picture {
+            width,
+            height,
+            pixels,
+        }
+    }
+
+    /// The colour plane of a film, brightened by `exposure` stops, clamped to what a screen can show, and sRGB-coded.
+    /// What is not a number becomes black.
+    pub fn develop(film: &Film, exposure: f32) -> Picture {
+        let gain = exposure.exp2();
+        let (linear, _) = film.plane(Plane::Colour).as_chunks::<3>();
+        let pixels = linear
+            .iter()
+            .map(|rgb| rgb.map(|c| tone::encode(c * gain)))
+            .collect();
+        Picture {
+            width: film.width(),
+            height: film.height(),
+            pixels,
+        }
+    }
+
+    /// Width in pixels.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Height in pixels.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// All pixels, row by row from the top left.
+    pub fn pixels(&self) -> &[[f32; 3]] {
+        &self.pixels
+    }
+
+    /// One pixel; `None` beside the picture.
+    pub fn pixel(&self, x: u32, y: u32) -> Option<[f32; 3]> {
+        (x < self.width && y < self.height)
+            .then(|| self.pixels[y as usize * self.width as usize + x as usize])
+    }
+
+    /// Sets a pixel; beside the picture nothing happens, so that drawings are clipped.
+    pub fn set(&mut self, x: i64, y: i64, colour: [f32; 3]) {
+        if (0..i64::from(self.width)).contains(&x) && (0..i64::from(self.height)).contains(&y) {
+            self.pixels[y as usize * self.width as usize + x as usize] = colour;
+        }
+    }
+
+    /// Fills a rectangle, clipped to the picture.
+    pub fn fill(&mut self, [x, y]: [i64; 2], [width, height]: [i64; 2], colour: [f32; 3]) {
+        let columns = x.clamp(0, i64::from(self.width)) as usize
+            ..(x + width).clamp(0, i64::from(self.width)) as usize;
+        for row in y.clamp(0, i64::from(self.height))..(y + height).clamp(0, i64::from(self.height))
+        {
+            let start = row as usize * self.width as usize;
+            if columns.start < columns.end {
+                self.pixels[start + columns.start..start + columns.end].fill(colour);
+            }
+        }
+    }
+}
