@@ -57,6 +57,7 @@ impl<R: Real> Real for Dual<R> where Self: Ops<R::Scalar> + Masked<Mask = R::Mas
     #[inline(always)] fn select(m: R::Mask, a: Self, b: Self) -> Self { Dual { v: R::select(m, a.v, b.v), d: Self::pick(m, a.d, b.d) } }
     #[inline(always)] fn choose(m: R::Mask, a: Self, b: Self) -> Self { let d = Self::pick(m, a.d, b.d); Dual { v: R::choose(m, a.v, b.v), d: [R::jump_slope(m, d[0]), R::jump_slope(m, d[1]), R::jump_slope(m, d[2])] } }
     #[inline(always)] fn proven(self, lo: f32, hi: f32, at: Vec3<Self>, slope: f32) -> Self { Dual { v: self.v.proven(lo, hi, v3(at.x.v, at.y.v, at.z.v), slope), d: self.d } }
+    #[inline(always)] fn whole(self) -> Self { Dual { v: self.v.whole(), d: self.d } }
     #[inline(always)] fn sqrt(self) -> Self { let r = self.v.sqrt(); self.chain(r, r.lit(0.5) / r.max(1e-18)) }
     #[inline(always)] fn abs(self) -> Self { Dual { v: self.v.abs(), d: Self::pick(self.v.negative(), (-self).d, self.d) } }
     #[inline(always)] fn floor(self) -> Self { let f = self.v.floor(); let s = self.v.step_slope(f); self.chain(f, s) }

@@ -6,7 +6,7 @@
 //! The hash repeats after 289 cells along every axis.
 
 use super::real::Real;
-use super::vector::{Vec2, Vec3, v3};
+use super::vector::{Vec2, Vec3, v2, v3};
 
 /// Cells farther from the origin than this count as being there: up to here the arithmetic is exact.
 const REACH: f32 = 4_194_304.0;
@@ -25,7 +25,7 @@ fn mod289<R: Real>(x: R) -> R {
 #[inline(always)]
 fn permute<R: Real>(x: R) -> R {
     let x = mod289(x);
-    mod289((x * 34.0 + 10.0) * x)
+    mod289((x * 34.0 + 10.0) * x).whole()
 }
 
 #[inline(always)]
@@ -56,10 +56,27 @@ impl<R: Real> Hash<R> {
         Hash(permute(permute(permute(cell(c.x)) + cell(c.y)) + cell(c.z)))
     }
 
+    /// The hash of the same cell and one more whole number: `of1(x).and(y).and(z)` is `of3`, step by step, so that
+    /// neighbours can share the steps that they have in common.
+    #[inline(always)]
+    pub fn and(self, x: R) -> Self {
+        Hash(permute(self.0 + cell(x)))
+    }
+
     /// Another hash of the same cell.
     #[inline(always)]
     pub fn next(self) -> Self {
         Hash(permute(self.0))
+    }
+
+    /// As a point of a 17 by 17 grid in the open square (-1, 1) x (-1, 1).
+    #[inline(always)]
+    pub fn square(self) -> Vec2<R> {
+        // half a step off the whole numbers, so that no rounding decides the floor
+        let row = ((self.0 + 0.5) * (1.0 / 17.0)).floor();
+        let centred =
+            |i: R| ((i - 8.0) * (2.0 / 17.0)).proven(-1.0, 1.0, Vec3::splat(i), f32::INFINITY);
+        v2(centred(self.0 - row * 17.0), centred(row))
     }
 
     /// As a number in [0, 1): one of 289 evenly spaced ones.
@@ -92,7 +109,7 @@ pub fn hash3<R: Real>(c: Vec3<R>) -> R {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::number::{F64, v2};
+    use crate::number::F64;
 
     fn one<R: Real>(p: Vec3<R>) -> [R; 4] {
         let c = p.floor();

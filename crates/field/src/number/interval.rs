@@ -20,6 +20,8 @@ impl Interval {
     pub fn new(lo: f64, hi: f64) -> Self { Interval { lo, hi } }
     pub fn point(x: f64) -> Self { Interval { lo: x, hi: x } }
     pub fn hull(self, o: Self) -> Self { Interval { lo: self.lo.min(o.lo), hi: self.hi.max(o.hi) } }
+    /// What both hold; self where that is nothing.
+    pub(super) fn intersect(self, o: Self) -> Self { let r = Interval { lo: self.lo.max(o.lo), hi: self.hi.min(o.hi) }; if r.lo <= r.hi { r } else { self } }
     pub fn contains(self, x: f64) -> bool { self.lo <= x && x <= self.hi }
     pub fn mag(self) -> f64 { self.lo.abs().max(self.hi.abs()) }
     /// Monotone f, correct to about an ulp or two.
@@ -84,6 +86,15 @@ impl Real for Interval {
     }
     fn jump_slope(m: Maybe, slope: Self) -> Self { if m.yes && m.no { WHOLE } else { slope } }
     fn proven(self, lo: f32, hi: f32, _at: Vec3<Self>, _slope: f32) -> Self { let c = |x: f64| x.clamp(lo as f64, hi as f64); Interval { lo: c(self.lo), hi: c(self.hi) } }
+    fn bounded_slope(p: Vec3<Self>, slope: f32, f: impl Fn(Vec3<Self>) -> Self) -> Self {
+        let (centre, reach) = middle(p);
+        let direct = f(p);
+        if !reach.is_finite() { return direct; }
+        let around = f(centre.map(Interval::point));
+        let by = up(slope as f64 * reach);
+        direct.intersect(Interval { lo: dn(around.lo - by), hi: up(around.hi + by) })
+    }
+    fn whole(self) -> Self { let r = Interval { lo: self.lo.ceil(), hi: self.hi.floor() }; if r.lo <= r.hi { r } else { self } }
     fn fract(self) -> Self { let f = self.floor(); if f.lo < f.hi { Interval { lo: 0.0, hi: 1.0 } } else { self - f } }
     fn modulo<C: Copy>(self, c: C) -> Self where Self: Ops<C> { modulo(self, self.lit(1.0) * c) }
     fn repeat_while<T: State<Self>>(limit: Self, init: T, live: impl Fn(T) -> Maybe, step: impl Fn(T) -> T) -> T {
@@ -101,6 +112,13 @@ impl Real for Interval {
     fn fold<const W: usize, T: State<Self>>(store: &[f32], at: usize, ends: Ends, init: T, step: impl Fn(T, [Self; W], [Self; W]) -> T) -> T {
         super::scalar::fold_slice(&store[at..], ends, init, |c| c.into(), step)
     }
+}
+/// The centre of a box, and how far from it the corners are.
+pub(super) fn middle(p: Vec3<Interval>) -> (Vec3<f64>, f64) {
+    let centre = p.map(|c| 0.5 * (c.lo + c.hi));
+    let away = |c: Interval, m: f64| up(c.hi - m).max(up(m - c.lo));
+    let half = [away(p.x, centre.x), away(p.y, centre.y), away(p.z, centre.z)];
+    (centre, half.iter().map(|h| h * h).sum::<f64>().sqrt() * (1.0 + 1e-15))
 }
 impl State<Interval> for Interval { fn zip(self, o: Self, f: impl Fn(Self, Self) -> Self + Copy) -> Self { f(self, o) } }
 fn cosine(x: Interval) -> Interval {

@@ -63,6 +63,16 @@ impl Real for Slope {
         let d = [0, 1, 2].map(|k| { let b = up(axis(k)); Interval { lo: self.d[k].lo.clamp(-b, b), hi: self.d[k].hi.clamp(-b, b) } });
         Slope::new(self.v.proven(lo, hi, at.map(|c| c.v), slope), d, self.l.min(up(times(slope as f64, rows([at.x, at.y, at.z])))))
     }
+    fn bounded_slope(p: Vec3<Self>, slope: f32, f: impl Fn(Vec3<Self>) -> Self) -> Self {
+        let at = p.map(|c| c.v);
+        let (centre, reach) = middle(at);
+        let direct = f(p).proven(f32::NEG_INFINITY, f32::INFINITY, p, slope);
+        if !reach.is_finite() { return direct; }
+        let around = f(centre.map(|c| Slope::flat(Interval::point(c)))).v;
+        let by = up(slope as f64 * reach);
+        Slope { v: direct.v.intersect(Interval::new(around.lo - by, around.hi + by)), ..direct }
+    }
+    fn whole(self) -> Self { Slope { v: self.v.whole(), ..self } }
     fn sqrt(self) -> Self { let r = self.v.sqrt(); self.chain(r, Interval::point(0.5) / r) }
     fn abs(self) -> Self { Slope::pick(self.v.below(0.0), self.v.abs(), -self, self) }
     fn floor(self) -> Self { let f = self.v.floor(); self.chain(f, self.v.step_slope(f)) }
