@@ -74,9 +74,14 @@ impl<R: Real> Hash<R> {
     pub fn square(self) -> Vec2<R> {
         // half a step off the whole numbers, so that no rounding decides the floor
         let row = ((self.0 + 0.5) * (1.0 / 17.0)).floor();
-        let centred =
-            |i: R| ((i - 8.0) * (2.0 / 17.0)).proven(-1.0, 1.0, Vec3::splat(i), f32::INFINITY);
-        v2(centred(self.0 - row * 17.0), centred(row))
+        let column = self.0 - row * 17.0;
+        v2(Self::centred(column), Self::centred(row))
+    }
+
+    /// A whole number in [0, 17) as a number in (-1, 1).
+    #[inline(always)]
+    fn centred(i: R) -> R {
+        ((i - 8.0) * (2.0 / 17.0)).proven(-1.0, 1.0, Vec3::splat(i), f32::INFINITY)
     }
 
     /// As a number in [0, 1): one of 289 evenly spaced ones.
@@ -104,63 +109,4 @@ pub fn hash2<R: Real>(c: Vec2<R>) -> R {
 #[inline(always)]
 pub fn hash3<R: Real>(c: Vec3<R>) -> R {
     Hash::of3(c).unit()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::number::F64;
-
-    fn one<R: Real>(p: Vec3<R>) -> [R; 4] {
-        let c = p.floor();
-        let h = Hash::of3(c);
-        [
-            hash1(c.x),
-            hash2(v2(c.x, c.y)),
-            hash3(c),
-            h.next().next().unit(),
-        ]
-    }
-
-    #[test]
-    fn same_bits_in_f32_and_f64() {
-        for i in -40_000i32..40_000 {
-            let (x, y, z) = ((i * 101) as f32, (i * 7 - 3) as f32, (-i * 57) as f32);
-            let a = one(v3(x, y, z));
-            let b = one(v3(F64(x.into()), F64(y.into()), F64(z.into())));
-            for k in 0..4 {
-                assert_eq!(f64::from(a[k]), b[k].0, "cell ({x}, {y}, {z})");
-                assert!((0.0..1.0).contains(&a[k]));
-            }
-        }
-    }
-
-    /// Operators take numbers, parameters and literals on the right.
-    fn usage<R: Real>(p: Vec3<R>, a: crate::number::Args<'_, R>) -> R {
-        let c = a.vec3(0);
-        let q = (p - c) * 2.0 * a.get(3) * p.x + v3(1.0, 2.0, 3.0);
-        let r = q.cross(c).cross(p).abs().min(c).max(p).clamp(0.0, a.get(3)) / 3.0;
-        let k = (c * 2.0 - c)
-            .length()
-            .clamp(1.0, a.get(2))
-            .modulo(2.0)
-            .mix(a.get(0), 0.5);
-        r.dot(c)
-            + r.dot(v3(0.5, 0.5, 0.5))
-            + r.x.modulo(a.get(1)).clamp(-1.0, p.y).mix(p.z, k).powi(5)
-            + q.xy().perpendicular().dot(a.vec2(1))
-            + r.normalize().max_component().acos().smoothstep(0.0, 1.0)
-            + k
-    }
-
-    #[test]
-    fn formulas_read_well() {
-        assert!(
-            usage(
-                v3(0.1f32, 0.2, 0.3),
-                crate::number::Args::new(&[1.0, 2.0, 3.0, 4.0][..])
-            )
-            .is_finite()
-        );
-    }
 }

@@ -110,7 +110,7 @@ impl Real for Interval {
         join(done, s).unwrap()
     }
     fn fold<const W: usize, T: State<Self>>(store: &[f32], at: usize, ends: Ends, init: T, step: impl Fn(T, [Self; W], [Self; W]) -> T) -> T {
-        super::scalar::fold_slice(&store[at..], ends, init, |c| c.into(), step)
+        super::list::fold_list(store, at, ends, init, |s, a: [f32; W], b: [f32; W]| step(s, a.map(Into::into), b.map(Into::into)))
     }
 }
 /// The centre of a box, and how far from it the corners are.

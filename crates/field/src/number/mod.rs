@@ -2,10 +2,12 @@
 
 pub mod args;
 pub mod dual;
+pub mod elementary;
 pub mod expr;
 pub mod hash;
 pub mod interval;
 pub mod lanes;
+mod list;
 pub mod real;
 pub mod scalar;
 pub mod slope;
@@ -17,7 +19,7 @@ pub use expr::{Expr, Recorder};
 pub use hash::{Hash, hash1, hash2, hash3};
 pub use interval::Interval;
 pub use lanes::Lanes;
-pub use real::{Ends, Masked, Ops, Real, State, Truth, differ, inlined, length2};
+pub use real::{Ends, MOST_STEPS, Masked, Ops, Real, State, Truth, differ, inlined, length2};
 pub use scalar::F64;
 pub use slope::Slope;
 pub use vector::{Vec2, Vec3, v2, v3};
