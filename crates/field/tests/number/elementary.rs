@@ -24,7 +24,12 @@ formulas! {
 const UNDERFLOW: f64 = 1.7e-38;
 
 /// Holds a function against f64: `error(got, expected)` must not be above 1.
-fn hold<F: Formula>(name: &str, params: &[f32], points: &[[f32; 3]], error: impl Fn(f64, f64) -> f64) {
+fn hold<F: Formula>(
+    name: &str,
+    params: &[f32],
+    points: &[[f32; 3]],
+    error: impl Fn(f64, f64) -> f64,
+) {
     for (level, simd) in levels() {
         for (p, got) in points.iter().zip(lanes::<F>(simd, params, points)) {
             let expected = reference::<F>(params, p.map(f64::from));
@@ -35,7 +40,10 @@ fn hold<F: Formula>(name: &str, params: &[f32], points: &[[f32; 3]], error: impl
             } else {
                 error(got.into(), expected) <= 1.0
             };
-            assert!(fine, "{name} at {p:?} ({level}): {got:e}, should be {expected:e}");
+            assert!(
+                fine,
+                "{name} at {p:?} ({level}): {got:e}, should be {expected:e}"
+            );
         }
     }
 }
@@ -53,7 +61,9 @@ fn arguments() -> Vec<[f32; 3]> {
         let x = (f64::from(n) * std::f64::consts::FRAC_PI_2) as f32;
         xs.extend([x.next_down(), x, x.next_up()]);
     }
-    for x in [8192.0_f32, 88.376, 88.722_83, -87.336_54, -103.97, -126.0, 128.0, 127.5] {
+    for x in [
+        8192.0_f32, 88.376, 88.722_83, -87.336_54, -103.97, -126.0, 128.0, 127.5,
+    ] {
         xs.extend([x.next_down(), x, x.next_up()]);
     }
     along_x(xs)
@@ -109,10 +119,19 @@ fn atan2_everywhere() {
     points.retain(|[x, y, _]| !(x.is_infinite() && y.is_infinite()));
     hold::<Atan2>("atan2", &[], &points, in_ulp(2.5));
     for (_, level) in levels() {
-        for (x, y) in [(0.0, 0.0), (0.0, -0.0), (-0.0, 0.0), (-0.0, -0.0), (1.0, -0.0)] {
+        for (x, y) in [
+            (0.0, 0.0),
+            (0.0, -0.0),
+            (-0.0, 0.0),
+            (-0.0, -0.0),
+            (1.0, -0.0),
+        ] {
             let got = lanes::<Atan2>(level, &[], &[[x, y, 0.0]])[0];
             let expected = y.atan2(x);
-            assert_eq!((got, got.is_sign_negative()), (expected, expected.is_sign_negative()));
+            assert_eq!(
+                (got, got.is_sign_negative()),
+                (expected, expected.is_sign_negative())
+            );
         }
     }
 }
@@ -120,8 +139,26 @@ fn atan2_everywhere() {
 #[test]
 fn powers() {
     let ks = [
-        0.0, 1.0, -1.0, 0.5, -0.5, 2.0, 2.4, 3.0, 7.0, 8.0, -8.0, 1.0 / 3.0, 40.0, 100.3, -300.0,
-        1e-3, 1e-20, 1e5, -1e5, 1e30,
+        0.0,
+        1.0,
+        -1.0,
+        0.5,
+        -0.5,
+        2.0,
+        2.4,
+        3.0,
+        7.0,
+        8.0,
+        -8.0,
+        1.0 / 3.0,
+        40.0,
+        100.3,
+        -300.0,
+        1e-3,
+        1e-20,
+        1e5,
+        -1e5,
+        1e30,
     ];
     for k in ks {
         let mut xs: Vec<f32> = every_exponent(6);

@@ -120,7 +120,16 @@ pub fn ulp(x: f64) -> f64 {
 
 /// Numbers with every exponent and sign, `each` of them for each, with zeros, infinities and the ends of the range.
 pub fn every_exponent(each: u32) -> Vec<f32> {
-    let mut out = vec![0.0, -0.0, 1.0, -1.0, f32::MAX, f32::MIN, f32::INFINITY, f32::NEG_INFINITY];
+    let mut out = vec![
+        0.0,
+        -0.0,
+        1.0,
+        -1.0,
+        f32::MAX,
+        f32::MIN,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+    ];
     let mut noise = 0x9e37_79b9_u32;
     for high in 0..512_u32 {
         for i in 0..each {
