@@ -69,7 +69,7 @@ impl Style for Fillet {
         let k = a.get(0);
         let (u, v) = ((-(x - k)).max(0.0), (-(y - k)).max(0.0));
         let least = x.min(y);
-        (least.max(k) - length2(u, v)).max(least - k * 0.5)
+        (least.like(k).max(least) - length2(u, v)).max(least - k * 0.5)
     }
     /// The derivatives on the arc are a unit vector.
     fn lipschitz(_a: &[f64], x: f64, y: f64) -> f64 {

@@ -163,7 +163,8 @@ impl Modify for Extrude {
     #[inline(always)]
     fn modify<R: Real>(d: R, p: Vec3<R>, a: Args<'_, R>) -> R {
         let z = p.z.abs() - a.get(0) * 0.5;
-        length2(d.max(0.0), z.max(0.0)) + d.max(z).min(0.0)
+        // on the surface, the derivative is that of the field or the height, not of 0
+        length2(d.max(0.0), z.max(0.0)) + d.lit(0.0).min(d.max(z))
     }
     /// The field and the height change in directions at right angles, and the derivatives by them are a unit vector or 1.
     fn lipschitz(_a: &[f64], slope: f64) -> f64 {

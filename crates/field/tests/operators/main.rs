@@ -1,0 +1,46 @@
+//! Every join, map and modifier of the catalogue is what it says: a new entry is proven by being listed.
+//!
+//! `cargo test --test operators Twist` proves one entry (any part of the struct's name, with its capitals).
+
+use zeroset_field::{catalogue, each_join, each_map, each_modify};
+
+mod field;
+mod formula;
+mod joins;
+mod maps;
+mod modifiers;
+mod mutants;
+mod numbers;
+mod shapes;
+mod statement;
+
+macro_rules! proofs {
+    ($tests:ident $kind:ident $($module:ident :: $entry:ident,)*) => {
+        #[allow(non_snake_case, reason = "a test has the name of its entry")]
+        mod $tests {
+            use super::{catalogue, $kind};
+            $(
+                #[test]
+                fn $entry() {
+                    if let Err(failure) = $kind::prove(&$kind::table::<catalogue::$module::$entry>()) {
+                        panic!("{failure}");
+                    }
+                }
+            )*
+
+            pub(super) fn names() -> Vec<&'static str> {
+                vec![$($kind::table::<catalogue::$module::$entry>().common.info.name),*]
+            }
+        }
+    };
+}
+each_join!(proofs join joins);
+each_map!(proofs map maps);
+each_modify!(proofs modify modifiers);
+
+#[test]
+fn names_are_unique() {
+    let mut names = [join::names(), map::names(), modify::names()].concat();
+    names.sort_unstable();
+    assert!(names.windows(2).all(|w| w[0] != w[1]), "{names:?}");
+}
