@@ -88,6 +88,10 @@ macro_rules! each_modify {
             modify::Round,
             modify::Onion,
             modify::Extrude,
+            modify_displace::Displace,
+            modify_displace::DisplaceValue,
+            modify_displace::DisplaceGradient,
+            modify_displace::DisplaceCellular,
         }
     };
 }

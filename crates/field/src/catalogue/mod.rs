@@ -20,6 +20,7 @@ pub mod map;
 pub mod map_bend;
 pub mod map_deform;
 pub mod modify;
+pub mod modify_displace;
 pub mod noise;
 pub mod solid;
 

@@ -2,6 +2,16 @@
 //!
 //! `cargo test --test operators Twist` proves one entry (any part of the struct's name, with its capitals).
 
+#![allow(unreachable_pub, reason = "nothing outside a test can use it")]
+#![allow(
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "what is not a number must fail"
+)]
+#![allow(
+    clippy::type_complexity,
+    reason = "plain functions of numbers need no names"
+)]
+
 use zeroset_field::{catalogue, each_join, each_map, each_modify};
 
 mod field;

@@ -86,7 +86,7 @@ pub fn derivatives(t: &Table, a: &Params) -> Result<(), Failure> {
             }
             steepest = steepest.max(s);
         }
-        if !(steepest >= 0.9 * limit) && t.common.info.group != "Noise" {
+        if !(steepest >= 0.9 * limit) && t.common.info.group != "Noise displacement" {
             let what = format!(
                 "{limit} is stated for a field of slope {slope}, only {steepest} is reached"
             );

@@ -50,7 +50,7 @@ formulas! {
     Multiplied |[_, x, y, z], a| [x * a.get(0), y * a.get(1), z * a.get(2)];
     Shrunk |[d, x, y, z], a| [Round::modify(-d, v3(x, y, z), a), x * 0.0, x * 0.0];
     HeightForHalf |[d, x, y, z], a| [Extrude::modify(d, v3(x, y, z * 0.5), a), x * 0.0, x * 0.0];
-    NotANumber |[d, _, y, _], _a| [d + (y * 0.0) / (y * 0.0), y * 0.0, y * 0.0];
+    NotANumber |[d, _, y, _], _a| { let o = y * 0.0; [d + y / o * o, o, o] };
     Slightly |[_, x, y, z], a| [SmoothUnion::join(x, y, a) + 0.001, z * 0.0, z * 0.0];
 }
 

@@ -3,7 +3,7 @@
 use zeroset_field::number::Interval;
 
 use crate::formula::{Gradient, Input, Seeds, levels};
-use crate::shapes::{Random, length};
+use crate::shapes::{Random, dot, length};
 use crate::statement::{Common, Failure, Params};
 
 /// Error of `f32` and SIMD, relative to the size of the numbers that go in.
@@ -128,38 +128,54 @@ pub fn gradient(c: &Common, a: &Params) -> Result<(), Failure> {
     let places = inputs(c, a, 400, 4);
     let (mut smooth, mut all) = (0, 0);
     let field = [0.6, 0.0, 0.8];
+    let ways = [
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [1.0, 1.0, 0.0],
+        [1.0, -1.0, 0.0],
+        [0.0, 1.0, 1.0],
+    ];
     for &q in &places {
         let got = (c.numbers.gradient)(q, seeds(field), &a.stored);
         let plain = (c.numbers.value)(q, &a.stored);
-        for axis in 0..3 {
-            let moved = |t: f64| {
-                let mut r = q;
-                r[0] += t * field[axis];
-                r[axis + 1] += t;
-                (c.numbers.value)(r, &a.stored)
-            };
-            let (above, below) = (moved(h), moved(-h));
-            for k in 0..3 {
-                all += 1;
-                if !((got[k].0 - plain[k]).abs() <= 1e-12 * size(q)) {
-                    return Err(c.fail(
-                        "gradient",
-                        a,
-                        format!("its value at {q:?} is {}, not {}", got[k].0, plain[k]),
-                    ));
-                }
-                let (right, left) = ((above[k] - plain[k]) / h, (plain[k] - below[k]) / h);
-                // at an edge the two sides differ, and at a tear they jump: there is no gradient to compare
-                let steep = right.abs().max(1.0);
-                if (right - left).abs() < 1e-3 * steep && steep < 1e4 {
-                    smooth += 1;
-                    if (got[k].1[axis] - 0.5 * (right + left)).abs() > 2e-3 * steep {
-                        let what = format!(
-                            "{:?} at {q:?}, differences along {axis} give {left} and {right}",
-                            got[k].1
-                        );
-                        return Err(c.fail("gradient", a, what));
-                    }
+        let moved = |d: [f64; 3], t: f64| {
+            let step = [dot(d, field), d[0], d[1], d[2]];
+            (c.numbers.value)(std::array::from_fn(|i| q[i] + t * step[i]), &a.stored)
+        };
+        let quotients = ways.map(|d| {
+            let (above, below) = (moved(d, h), moved(d, -h));
+            [0, 1, 2].map(|k| ((above[k] - plain[k]) / h, (plain[k] - below[k]) / h))
+        });
+        for k in 0..3 {
+            all += 1;
+            if !((got[k].0 - plain[k]).abs() <= 1e-12 * size(q)) {
+                return Err(c.fail(
+                    "gradient",
+                    a,
+                    format!("its value at {q:?} is {}, not {}", got[k].0, plain[k]),
+                ));
+            }
+            // at an edge the two sides differ, and at a tear they jump: there is no gradient to compare
+            let steep = quotients
+                .iter()
+                .fold(1.0, |s: f64, way| s.max(way[k].0.abs()));
+            if quotients
+                .iter()
+                .any(|way| (way[k].0 - way[k].1).abs() > 1e-3 * steep)
+                || steep > 1e4
+            {
+                continue;
+            }
+            smooth += 1;
+            for (d, way) in ways.iter().zip(&quotients) {
+                let (right, left) = way[k];
+                if (dot(got[k].1, *d) - 0.5 * (right + left)).abs() > 3e-3 * steep {
+                    let what = format!(
+                        "{:?} at {q:?}, differences along {d:?} give {left} and {right}",
+                        got[k].1
+                    );
+                    return Err(c.fail("gradient", a, what));
                 }
             }
         }

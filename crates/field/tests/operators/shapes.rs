@@ -172,10 +172,10 @@ impl Shape {
             Ball { c, r } => solid(c, [*r; 3]),
             Half { n, d } => {
                 let mut b = Aabb::WHOLE;
-                for k in 0..3 {
-                    if n[k] == 1.0 {
+                for (k, n) in n.iter().enumerate() {
+                    if *n == 1.0 {
                         b.max[k] = *d;
-                    } else if n[k] == -1.0 {
+                    } else if *n == -1.0 {
                         b.min[k] = -d;
                     }
                 }
@@ -318,11 +318,10 @@ pub fn pairs(random: &mut Random) -> Vec<(Shape, Shape)> {
     ]);
     let same = Shape::solid(random, 0.3);
     out.extend([(ball(0.1, 0.7), ball(0.1, 0.7)), (same.clone(), same)]);
-    // bounds inside
-    out.push((
-        Two(Box::new(ball(-0.4, 0.5)), Box::new(ball(0.3, 0.6))),
-        Shape::solid(random, 0.5),
-    ));
+    // inside these the value is a bound
+    let two = Two(Box::new(ball(-0.4, 0.6)), Box::new(ball(0.3, 0.7)));
+    out.push((two.clone(), Shape::solid(random, 0.5)));
+    out.extend([(two.clone(), ball(0.0, 1.2)), (half(1.0, 1.0), two)]);
     out
 }
 
