@@ -291,6 +291,8 @@ impl Field {
             return Ok(first.clone());
         }
         let mut facts = first.facts().above()?;
+        let boxes: Vec<Aabb> = shapes.iter().map(|s| s.facts().bounds).collect();
+        let bounds = (entry.bounds)(&params, &boxes);
         for shape in rest {
             let f = shape.facts();
             if facts.dimension != f.dimension
@@ -311,7 +313,7 @@ impl Field {
             };
             let slope = (entry.lipschitz)(&params, x, y);
             facts = Facts {
-                bounds: (entry.bounds)(&params, &facts.bounds, &f.bounds),
+                bounds,
                 exactness: (entry.exactness)(facts.exactness, f.exactness),
                 slope,
                 steep: !entry.sharp

@@ -77,8 +77,8 @@ pub struct JoinEntry {
     pub code: u16,
     /// See [`Join::lipschitz`].
     pub lipschitz: fn(&[f64], f64, f64) -> f64,
-    /// See [`Join::bounds`].
-    pub bounds: fn(&[f64], &Aabb, &Aabb) -> Aabb,
+    /// See [`Join::fold_bounds`].
+    pub bounds: fn(&[f64], &[Aabb]) -> Aabb,
     /// See [`Join::exactness`].
     pub exactness: fn(Exactness, Exactness) -> Exactness,
     /// See [`Join::reach`].
@@ -213,7 +213,7 @@ fn join<E: Join>() -> JoinEntry {
         samples: E::SAMPLES,
         code: 0,
         lipschitz: E::lipschitz,
-        bounds: E::bounds,
+        bounds: E::fold_bounds,
         exactness: E::exactness,
         reach: E::reach,
         contains: E::contains,

@@ -5,6 +5,7 @@
 
 use super::join_style::{Style, StyledIntersection, StyledSubtraction, StyledUnion, whole};
 use super::*;
+use crate::number::F64;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 const RADIUS: Param = number(
@@ -77,6 +78,32 @@ impl Style for Fillet {
     }
     fn reach(a: &[f64]) -> f64 {
         0.5 * a[0]
+    }
+    /// By bisection, between no reach and that of a wall, for the arc does not move along with its operands.
+    fn fold_reach(a: &[f64], n: usize) -> f64 {
+        let params = [a[0] as f32];
+        let k = f64::from(params[0]);
+        let joined = |x: f64| {
+            let mut value = x;
+            for _ in 1..n {
+                let next = Self::lower(F64(value), F64(x), Args::new(&params[..])).0;
+                if next <= 0.0 || value - next <= 1e-12 * k {
+                    return next;
+                }
+                value = next;
+            }
+            value
+        };
+        let (mut reached, mut free) = (0.0, k);
+        for _ in 0..40 {
+            let x = 0.5 * (reached + free);
+            if joined(x) <= 0.0 {
+                reached = x
+            } else {
+                free = x
+            }
+        }
+        free
     }
 }
 
@@ -172,6 +199,15 @@ impl Style for Columns {
     /// Most is taken at the axis of a column in the middle.
     fn reach(a: &[f64]) -> f64 {
         a[0] * (0.5 + Columns::share(a[1]))
+    }
+    /// A column does not grow with both operands. But only where the next operand is less than `k` from what is joined
+    /// already does it change anything, and then by no more than the reach.
+    fn fold_reach(a: &[f64], n: usize) -> f64 {
+        match n {
+            0 | 1 => 0.0,
+            2 => Self::reach(a),
+            _ => Self::reach(a) + a[0].min((n - 2) as f64 * Self::reach(a)),
+        }
     }
     fn check(a: &[f64]) -> Result<(), String> {
         whole("n", a[1])

@@ -13,6 +13,7 @@
 //! with its profile, since the largest ball around (x, y) in which the derivatives may add up to 1 is a square.
 
 use super::*;
+use crate::number::F64;
 use std::marker::PhantomData;
 
 /// A way of joining: the joined minimum and what is known of it.
@@ -37,6 +38,22 @@ pub trait Style: 'static {
     }
     /// Largest `min(x, y) - m(x, y)`.
     fn reach(a: &[f64]) -> f64;
+    /// Largest value that all of `n` operands can have where the union of them, joined from left to right, is at most 0.
+    ///
+    /// A joined minimum that grows with both operands is smallest beside them where all are equal; one that moves along
+    /// with them then goes down by `s' = -m(-s, 0)`, from 0, with every operand.
+    fn fold_reach(a: &[f64], n: usize) -> f64 {
+        let a: Vec<f32> = a.iter().map(|&x| x as f32).collect();
+        let mut reach = 0.0;
+        for _ in 1..n {
+            let next = -Self::lower(F64(-reach), F64(0.0), Args::new(&a[..])).0;
+            if next - reach <= 1e-12 * next {
+                break;
+            }
+            reach = next;
+        }
+        reach
+    }
     /// Relations between parameters that ranges cannot state.
     fn check(_a: &[f64]) -> Result<(), String> {
         Ok(())
@@ -64,7 +81,8 @@ const fn info<S: Style>(which: usize) -> Info {
 macro_rules! styled {
     ($($join:ident $which:literal |$x:ident, $y:ident, $a:ident| $value:expr;
         |$level:ident, $r:ident, $bx:ident, $by:ident| $bounds:expr;
-        |$ix:ident, $iy:ident| $contains:expr;)*) => {$(
+        |$ix:ident, $iy:ident| $contains:expr;
+        $fold_bounds:expr;)*) => {$(
         impl<S: Style> Join for $join<S> {
             const INFO: Info = info::<S>($which);
             const SHARP: bool = false;
@@ -84,6 +102,9 @@ macro_rules! styled {
             ) -> Aabb {
                 let $r = S::reach(a);
                 $bounds
+            }
+            fn fold_bounds(a: &[f64], shapes: &[Aabb]) -> Aabb {
+                $fold_bounds(a, shapes)
             }
             /// A join in a style is a distance bound, not a distance.
             fn exactness(x: Exactness, y: Exactness) -> Exactness {
@@ -105,13 +126,19 @@ styled! {
     StyledUnion 0 |x, y, a| S::lower(x, y, a);
         |level, r, x, y| x(level + r).hull(&y(level + r));
         |x, y| x || y;
+        |a, shapes: &[Aabb]| {
+            let reach = S::fold_reach(a, shapes.len());
+            shapes.iter().fold(Aabb::EMPTY, |b, shape| b.hull(&shape.grow(reach)))
+        };
     // never below the sharp ones
     StyledIntersection 1 |x, y, a| -S::lower(-x, -y, a);
         |level, _r, x, y| x(level).intersect(&y(level));
         |x, y| x && y;
+        |_a, shapes: &[Aabb]| shapes.iter().fold(Aabb::WHOLE, |b, shape| b.intersect(shape));
     StyledSubtraction 2 |x, y, a| -S::lower(-x, y, a);
         |level, _r, x, _y| x(level);
         |x, y| x && !y;
+        |_a, shapes: &[Aabb]| shapes.first().copied().unwrap_or(Aabb::EMPTY);
 }
 
 /// Whether parameter `name` is a whole number.

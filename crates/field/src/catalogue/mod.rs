@@ -259,6 +259,11 @@ pub trait Join: 'static {
     fn bounds(a: &[f64], x: &Aabb, y: &Aabb) -> Aabb {
         Self::level_bounds(a, 0.0, &|level| x.grow(level), &|level| y.grow(level))
     }
+    /// A box that holds the result of joining many fields from left to right, from their boxes.
+    fn fold_bounds(a: &[f64], shapes: &[Aabb]) -> Aabb {
+        let joined = shapes.iter().copied().reduce(|x, y| Self::bounds(a, &x, &y));
+        joined.unwrap_or(Aabb::EMPTY)
+    }
     /// How true the result is.
     fn exactness(x: Exactness, y: Exactness) -> Exactness;
     /// How far from both surfaces the join may move the surface: 0 for sharp joins, infinite where the operands' signs

@@ -16,6 +16,7 @@ pub struct Table {
     pub common: Common,
     pub lipschitz: fn(&[f64], f64, f64) -> f64,
     pub level_bounds: fn(&[f64], f64, Level<'_>, Level<'_>) -> Aabb,
+    pub fold_bounds: fn(&[f64], &[Aabb]) -> Aabb,
     pub exactness: fn(Exactness, Exactness) -> Exactness,
     pub reach: fn(&[f64]) -> f64,
     pub contains: fn(bool, bool) -> bool,
@@ -37,6 +38,7 @@ pub fn table<J: Join>() -> Table {
                 J::level_bounds(a, level, x, y)
             }
         },
+        fold_bounds: J::fold_bounds,
         exactness: J::exactness,
         reach: J::reach,
         contains: J::contains,
@@ -50,6 +52,7 @@ pub fn prove(t: &Table) -> Result<(), Failure> {
         derivatives(t, &a)?;
         sign(t, &a)?;
         in_space(t, &a)?;
+        folds(t, &a)?;
         crate::numbers::single(&t.common, &a)?;
         crate::numbers::interval(&t.common, &a)?;
         crate::numbers::gradient(&t.common, &a)?;
@@ -179,4 +182,39 @@ fn starts(random: &mut Random, shapes: &[&Shape]) -> Vec<Point> {
         .collect();
     out.extend((0..120).map(|i| random.point(&Aabb::centred([[0.8, 2.0][i % 2]; 3]))));
     out
+}
+
+/// Many shapes joined from left to right stay in the box of all, when they coincide and when they do not.
+pub fn folds(t: &Table, a: &Params) -> Result<(), Failure> {
+    let mut random = Random::new(t.common.info.name, &a.exact, 23);
+    for (i, n) in [1, 2, 3, 5, 12, 12].into_iter().enumerate() {
+        let spread = [0.0, 0.1][i % 2] * size(a);
+        let shapes: Vec<Shape> = (0..n)
+            .map(|_| Shape::Ball {
+                c: std::array::from_fn(|_| random.within(-spread, spread)),
+                r: 0.7 + random.within(-spread, spread),
+            })
+            .collect();
+        let values = |p: Point| shapes.iter().map(move |s| s.value(p));
+        let joined = |p: Point| values(p).reduce(|x, y| value(t, a, x, y)).unwrap_or(0.0);
+        let boxes: Vec<Aabb> = shapes.iter().map(|s| s.bounds()).collect();
+        let b = (t.fold_bounds)(&a.exact, &boxes);
+        let starts = starts(&mut random, &[&shapes[0], &shapes[n - 1]]);
+        for p in reached(&joined, 0.0, &starts, 3.0) {
+            if !is_sound(&b) || !b.grow(1e-6).contains(p) {
+                let what = format!("{p:?} with {} is not in {b:?}, for {shapes:?}", joined(p));
+                return Err(t.common.fail("bounds", a, what));
+            }
+        }
+        // not much larger than needed either, where the join adds to the shapes at all
+        let grown = b.max[0] - boxes.iter().fold(f64::NEG_INFINITY, |m, b| m.max(b.max[0]));
+        if grown > 2.0 * size(a) {
+            return Err(t.common.fail(
+                "bounds",
+                a,
+                format!("{b:?} is {grown} wider than its {n} shapes"),
+            ));
+        }
+    }
+    Ok(())
 }

@@ -4,7 +4,9 @@ use zeroset_field::bounds::{Aabb, Exactness};
 use zeroset_field::catalogue::join::{Intersection, Subtraction, Union, Xor};
 use zeroset_field::catalogue::join_edge::{ChamferUnion, RoundUnion, StairsUnion};
 use zeroset_field::catalogue::join_line::Tongue;
-use zeroset_field::catalogue::join_smooth::{SmoothIntersection, SmoothUnion};
+use zeroset_field::catalogue::join_smooth::{
+    ExponentialIntersection, ExponentialUnion, SmoothIntersection, SmoothUnion,
+};
 use zeroset_field::catalogue::map::{Elongate, Mirror, Revolve};
 use zeroset_field::catalogue::map_bend::{Bend, Wrap};
 use zeroset_field::catalogue::map_deform::{Scale3, Shear, Taper, Twist};
@@ -188,6 +190,57 @@ fn wrong_facts_of_joins_are_refused() {
         join::<SmoothUnion>(|t| t.exactness = |_, _| Exactness::Outside),
         &["exactness"],
     );
+}
+
+#[test]
+fn wrong_boxes_of_many_are_refused() {
+    let hull = |_: &[f64], b: &[Aabb]| b.iter().fold(Aabb::EMPTY, |all, b| all.hull(b));
+    refused(join::<SmoothUnion>(|t| t.fold_bounds = hull), &["bounds"]);
+    let as_of_two = |a: &[f64], b: &[Aabb]| {
+        b.iter()
+            .fold(Aabb::EMPTY, |all, b| all.hull(&b.grow(0.25 * a[0])))
+    };
+    refused(
+        join::<SmoothUnion>(|t| t.fold_bounds = as_of_two),
+        &["bounds"],
+    );
+    let as_of_two = |a: &[f64], b: &[Aabb]| {
+        b.iter()
+            .fold(Aabb::EMPTY, |all, b| all.hull(&b.grow(0.3 * a[0])))
+    };
+    refused(
+        join::<RoundUnion>(|t| t.fold_bounds = as_of_two),
+        &["bounds"],
+    );
+    let pairs = |a: &[f64], b: &[Aabb]| {
+        b.iter()
+            .copied()
+            .reduce(|x, y| SmoothUnion::bounds(a, &x, &y))
+            .unwrap()
+    };
+    refused(join::<SmoothUnion>(|t| t.fold_bounds = pairs), &["bounds"]);
+}
+
+/// The exponential style is the associative one, and the only one.
+#[test]
+fn exponential_joins_do_not_depend_on_the_order() {
+    let value =
+        |t: &joins::Table, x: f64, y: f64| (t.common.numbers.value)([0.0, x, y, 0.0], &[0.4])[0];
+    let spread = |t: &joins::Table| {
+        let values = [0.3, -0.1, 0.05, 0.12, 0.7, -0.04];
+        let mut all = Vec::new();
+        for shift in 0..values.len() {
+            for step in [1, 5] {
+                let order = (0..values.len()).map(|i| values[(i * step + shift) % values.len()]);
+                all.extend(order.reduce(|x, y| value(t, x, y)));
+            }
+        }
+        let range = |start: f64, f: fn(f64, f64) -> f64| all.iter().copied().fold(start, f);
+        range(f64::NEG_INFINITY, f64::max) - range(f64::INFINITY, f64::min)
+    };
+    assert!(spread(&joins::table::<ExponentialUnion>()) < 1e-12);
+    assert!(spread(&joins::table::<ExponentialIntersection>()) < 1e-12);
+    assert!(spread(&joins::table::<SmoothUnion>()) > 1e-3);
 }
 
 #[test]
