@@ -207,7 +207,11 @@ impl Field {
         check_params(&entry.info, &params, entry.check)?;
         let child = self.facts();
         let through = through(&entry.info, child.dimension)?;
-        let dimension = if entry.section { Dimension::Two } else { through };
+        let dimension = if entry.section {
+            Dimension::Two
+        } else {
+            through
+        };
         let bounds = (entry.bounds)(&params, &child.bounds);
         let unfit = |reason| FieldError::Unfit {
             entry: entry.info.name,
