@@ -9,6 +9,13 @@ macro_rules! each_primitive {
             solid::Sphere,
             solid::Cuboid,
             solid::Plane,
+            fractal::Mandelbulb,
+            fractal::Mandelbox,
+            fractal::Menger,
+            fractal::Sierpinski,
+            fractal::Julia,
+            fractal::Apollonian,
+            fractal::Kaleidoscope,
         }
     };
 }

@@ -10,6 +10,7 @@ use crate::bounds::{Aabb, Exactness};
 use crate::number::{Args, Real, Vec2, Vec3, length2, v2, v3};
 
 pub mod entries;
+pub mod fractal;
 pub mod join;
 pub mod join_edge;
 pub mod join_line;
@@ -153,6 +154,17 @@ impl Info {
     }
 }
 
+/// How far a formula can be trusted at single places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Roughness {
+    /// Everywhere.
+    Smooth,
+    /// At planes of symmetry, where its foldings meet, the gradient may be that of another branch.
+    Folded,
+    /// The orbits of near points part: single precision agrees with double only at most places.
+    Chaotic,
+}
+
 /// A shape: a point in, a distance out.
 pub trait Primitive: 'static {
     /// Name, parameters, words.
@@ -172,6 +184,17 @@ pub trait Primitive: 'static {
     /// Whether `p` lies in the solid: plain `f64`, written from the shape's geometry and not from [`Self::distance`], so
     /// that the proofs have a second opinion on the sign.
     fn contains(a: &[f64], p: [f64; 3]) -> bool;
+    /// How many times longer than the solid a side of [`Self::bounds`] may be.
+    const SLACK: f64 = 1.25;
+    /// How far the formula can be trusted at single places.
+    const ROUGHNESS: Roughness = Roughness::Smooth;
+    /// Whether [`Self::traps`] says something.
+    const TRAPS: bool = false;
+    /// How near the orbit of `p` came to its traps: what fractals are coloured by.
+    #[inline(always)]
+    fn traps<R: Real>(p: Vec3<R>, _a: Args<'_, R>) -> [R; 4] {
+        [p.x.lit(0.0); 4]
+    }
     /// Relations between parameters that ranges cannot state; the message says what is allowed.
     fn check(_a: &[f64]) -> Result<(), String> {
         Ok(())

@@ -7,7 +7,7 @@
 
 use super::batch::{BATCH, Kernel, Kernels, Lane, Workspace, load};
 use crate::catalogue::*;
-use crate::number::{Args, Dual, Lanes, Real};
+use crate::number::{Args, Dual, Lanes, Real, v3};
 use crate::op::*;
 use crate::program::{Code, Instruction, Operation, Program};
 use fearless_simd::{Level, Simd, SimdBase, dispatch};
@@ -25,6 +25,8 @@ pub struct Marks {
     pub second: Lane,
     /// Share of the second, 0 to 1/2.
     pub share: Lane,
+    /// How near the orbit of a fractal came to the origin and to the planes x = 0, y = 0 and z = 0; zero elsewhere.
+    pub orbit: [Lane; 4],
 }
 
 impl Marks {
@@ -33,6 +35,7 @@ impl Marks {
         first: Lane([-1.0; BATCH]),
         second: Lane([-1.0; BATCH]),
         share: Lane::ZERO,
+        orbit: [Lane::ZERO; 4],
     };
 }
 
@@ -78,7 +81,12 @@ fn run<S: Simd>(s: S, code: &Code, params: &[f32], w: &mut Workspace, n: usize) 
     for i in &code.instructions {
         let (out, a, b) = (usize::from(i.out), usize::from(i.a), usize::from(i.b));
         match i.operation {
-            Operation::Leaf(_) => w.marks.marks[out] = Marks::NONE,
+            Operation::Leaf(code) => {
+                w.marks.marks[out] = Marks::NONE;
+                if let Some(trap) = Traps::<S>::ALL[usize::from(code)] {
+                    trap(s, i, params, &w.lanes, &mut w.marks.marks[out].orbit, n);
+                }
+            }
             Operation::Warp(_) => {}
             Operation::Change(_) => w.marks.marks[out] = w.marks.marks[a],
             Operation::Pair(code) => {
@@ -115,6 +123,9 @@ fn join(lanes: &mut MarkLanes, out: usize, a: usize, b: usize, n: usize) {
             ((&*b, &*a), 1.0 - w)
         };
         out.object.0[k] = near.object.0[k];
+        for (out, near) in out.orbit.iter_mut().zip(&near.orbit) {
+            out.0[k] = near.0[k];
+        }
         let first = near.first.0[k];
         let mut weights = (1.0 - w) * (1.0 - near.share.0[k]);
         // what competes for the second place: the near side's second material and the far side's first
@@ -179,4 +190,45 @@ macro_rules! shares { ($($entry:ty,)*) => { &[$(share::<S, $entry>),*] }; }
 
 impl<S: Simd> Shares<S> {
     const ALL: &'static [Share<S>] = each_pair!(shares);
+}
+
+/// Finds the orbit traps of a fractal.
+type Trap<S> = fn(S, &Instruction, &[f32], &[Lane], &mut [Lane; 4], usize);
+
+#[inline(never)]
+fn trap<S: Simd, E: Leaf>(
+    s: S,
+    i: &Instruction,
+    params: &[f32],
+    lanes: &[Lane],
+    out: &mut [Lane; 4],
+    n: usize,
+) {
+    let p = &lanes[usize::from(i.a)..][..3];
+    let a = Args {
+        store: params,
+        at: i.at as usize,
+    };
+    s.vectorize(
+        #[inline(always)]
+        || {
+            for k in (0..n.min(BATCH)).step_by(S::f32s::LEN) {
+                let traps = E::traps::<Lanes<S>>(
+                    v3(load(s, &p[0], k), load(s, &p[1], k), load(s, &p[2], k)),
+                    a,
+                );
+                for (out, trap) in out.iter_mut().zip(traps) {
+                    super::batch::store(trap, out, k);
+                }
+            }
+        },
+    );
+}
+
+struct Traps<S>(PhantomData<S>);
+
+macro_rules! traps { ($($entry:ty,)*) => { &[$(if <$entry as Leaf>::TRAPS { Some(trap::<S, $entry>) } else { None }),*] }; }
+
+impl<S: Simd> Traps<S> {
+    const ALL: &'static [Option<Trap<S>>] = each_leaf!(traps);
 }

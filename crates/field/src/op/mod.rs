@@ -16,6 +16,13 @@ pub mod domain;
 pub trait Leaf: 'static {
     /// The formula.
     fn leaf<R: Real>(p: Vec3<R>, a: Args<'_, R>) -> R;
+    /// See [`Primitive::TRAPS`].
+    const TRAPS: bool = false;
+    /// See [`Primitive::traps`].
+    #[inline(always)]
+    fn traps<R: Real>(p: Vec3<R>, _a: Args<'_, R>) -> [R; 4] {
+        [p.x.lit(0.0); 4]
+    }
 }
 
 /// A point in, a point out.
@@ -41,14 +48,14 @@ pub trait Pair: 'static {
 pub struct Centred<E>(PhantomData<E>);
 
 impl<E: Primitive> Leaf for Centred<E> {
+    const TRAPS: bool = E::TRAPS;
     #[inline(always)]
     fn leaf<R: Real>(p: Vec3<R>, a: Args<'_, R>) -> R {
-        let q = Vec3 {
-            x: p.x - a.get(0),
-            y: p.y - a.get(1),
-            z: p.z - a.get(2),
-        };
-        E::distance(q, a.list(3))
+        E::distance(domain::Offset::warp(p, a), a.list(3))
+    }
+    #[inline(always)]
+    fn traps<R: Real>(p: Vec3<R>, a: Args<'_, R>) -> [R; 4] {
+        E::traps(domain::Offset::warp(p, a), a.list(3))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use zeroset_field::bounds::{Aabb, Exactness};
-use zeroset_field::catalogue::{Info, Primitive};
+use zeroset_field::catalogue::{Info, Primitive, Roughness};
 use zeroset_field::number::{Args, Dual, F64, Interval, Lanes, Recorder, v3};
 
 pub type Point = [f64; 3];
@@ -12,6 +12,8 @@ pub type Point = [f64; 3];
 pub struct Entry {
     pub info: Info,
     pub exactness: Exactness,
+    pub slack: f64,
+    pub roughness: Roughness,
     pub samples: &'static [&'static [f64]],
     /// The reference.
     pub value: fn(Point, &[f32]) -> f64,
@@ -36,6 +38,8 @@ pub fn entry<P: Primitive>() -> Entry {
     Entry {
         info: P::INFO,
         exactness: P::EXACTNESS,
+        slack: P::SLACK,
+        roughness: P::ROUGHNESS,
         samples: P::SAMPLES,
         value: |p, a| P::distance(v3(F64(p[0]), F64(p[1]), F64(p[2])), Args::new(a)).0,
         gradient: |p, a| {

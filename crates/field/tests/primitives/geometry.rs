@@ -175,9 +175,6 @@ pub fn reached(case: &Case<'_>) -> Result<(), Failure> {
     Ok(())
 }
 
-/// How much larger than the solid the box may be, a side.
-const LOOSE: f64 = 1.25;
-
 /// The box holds the solid and little more.
 pub fn bounds(case: &Case<'_>) -> Result<(), Failure> {
     let mut random = case.random(9);
@@ -234,7 +231,7 @@ pub fn bounds(case: &Case<'_>) -> Result<(), Failure> {
             case.bounds.max[axis] - case.bounds.min[axis],
             reach[1][axis] - reach[0][axis],
         );
-        if side > LOOSE * solid + 1e-3 * case.size {
+        if side > case.entry.slack * solid + 1e-3 * case.size {
             return Err(case.fail(
                 "bounds",
                 format!("side {axis} is {side}, the solid reaches over {solid}"),

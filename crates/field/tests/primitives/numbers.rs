@@ -1,5 +1,6 @@
 //! Proofs that every number type computes the same formula.
 
+use zeroset_field::catalogue::Roughness;
 use zeroset_field::number::Interval;
 
 use crate::case::{Case, Failure, along, length};
@@ -8,6 +9,9 @@ use crate::entry::levels;
 /// Error of `f32` and SIMD, relative to the size of the shape and the distance from the origin.
 pub const SINGLE: f64 = 1e-5;
 
+/// Share of the places at which a chaotic entry may be off by more than [`SINGLE`].
+const CHAOS: f64 = 0.03;
+
 /// `f32` and every SIMD level against `f64`; no gradient that is not a number, not even at places of symmetry.
 pub fn single(case: &Case<'_>) -> Result<(), Failure> {
     let places: Vec<[f32; 3]> = case
@@ -15,11 +19,19 @@ pub fn single(case: &Case<'_>) -> Result<(), Failure> {
         .iter()
         .map(|p| p.map(|x| x as f32))
         .collect();
-    let compare = |what: &str, p: [f32; 3], value: f32| {
+    let mut excused = 0;
+    let mut compare = |what: &str, p: [f32; 3], value: f32| {
         let p = p.map(f64::from);
         let exact = case.value(p);
         let allowed = SINGLE * (case.size + length(p));
         if !((f64::from(value) - exact).abs() <= allowed) {
+            excused += 1;
+            if case.entry.roughness == Roughness::Chaotic
+                && value.is_finite()
+                && f64::from(excused) < CHAOS * (places.len() * (1 + levels().len())) as f64
+            {
+                return Ok(());
+            }
             return Err(case.fail(
                 "f32",
                 format!("{what} gives {value} at {p:?}, f64 gives {exact}"),
@@ -51,7 +63,7 @@ const USEFUL: (f64, f64) = (0.75, 64.0);
 /// The range over a box holds the value at every point of it, and over small boxes says something.
 pub fn interval(case: &Case<'_>) -> Result<(), Failure> {
     let mut random = case.random(11);
-    let (mut small, mut useful) = (0, 0);
+    let (mut small, mut useful) = (0_u32, 0_u32);
     for p in case.places(250, 12) {
         let half = random.scale(1e-4, 1.0) * case.size;
         let range = (case.entry.range)(p.map(|x| Interval::new(x - half, x + half)), &case.stored);
@@ -68,10 +80,10 @@ pub fn interval(case: &Case<'_>) -> Result<(), Failure> {
         }
         if half < 1e-2 * case.size {
             small += 1;
-            useful += usize::from(range.hi - range.lo <= USEFUL.1 * case.lipschitz * half);
+            useful += u32::from(range.hi - range.lo <= USEFUL.1 * case.lipschitz * half);
         }
     }
-    if (useful as f64) < USEFUL.0 * f64::from(small) {
+    if case.entry.roughness == Roughness::Smooth && f64::from(useful) < USEFUL.0 * f64::from(small) {
         return Err(case.fail(
             "interval",
             format!("only {useful} of {small} ranges over small boxes are useful"),
@@ -85,6 +97,7 @@ pub fn gradient(case: &Case<'_>) -> Result<(), Failure> {
     let places = case.places(600, 13);
     let h = 1e-5 * case.size;
     let mut smooth = 0;
+    let special = case.special();
     for &p in &places {
         let (value, gradient) = (case.entry.gradient)(p, &case.stored);
         let plain = case.value(p);
@@ -106,6 +119,10 @@ pub fn gradient(case: &Case<'_>) -> Result<(), Failure> {
             let (a, b) = (case.value(along(p, d, h)), case.value(along(p, d, -h)));
             ((a - plain) / h, (plain - b) / h)
         });
+        if case.entry.roughness == Roughness::Folded && special.contains(&p) {
+            smooth += 1;
+            continue;
+        }
         // At an edge of the field the two sides differ and there is no gradient to compare.
         if quotients
             .iter()
