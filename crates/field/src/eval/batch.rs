@@ -4,7 +4,7 @@ use crate::catalogue::*;
 use crate::number::{Args, Dual, Lanes, Real, Vec3, v3};
 use crate::op::*;
 use crate::program::{Code, Instruction, Operation, Program};
-use fearless_simd::{Level, Simd, SimdBase, dispatch};
+use fearless_simd::{Level, Simd, SimdBase};
 use std::marker::PhantomData;
 
 /// Points an instruction is run over at most. Large enough that the choice of a kernel costs nothing, small enough that
@@ -118,12 +118,12 @@ pub fn gradients<S: Simd>(s: S, program: &Program, w: &mut Workspace, n: usize) 
 // Not generic, so that the kernels are compiled once, in this crate.
 #[inline(never)]
 fn run_values(level: Level, code: &Code, params: &[f32], lanes: &mut [Lane], n: usize) {
-    dispatch!(level, s => run::<_, Lanes<_>>(s, code, params, lanes, n));
+    crate::at_level!(level, s => run::<_, Lanes<_>>(s, code, params, lanes, n))
 }
 
 #[inline(never)]
 fn run_gradients(level: Level, code: &Code, params: &[f32], lanes: &mut [Lane], n: usize) {
-    dispatch!(level, s => run::<_, Dual<Lanes<_>>>(s, code, params, lanes, n));
+    crate::at_level!(@avx2 level, s => run::<_, Dual<Lanes<_>>>(s, code, params, lanes, n))
 }
 
 #[inline(always)]

@@ -10,7 +10,7 @@ use crate::catalogue::*;
 use crate::number::{Args, Dual, Lanes, Real, v3};
 use crate::op::*;
 use crate::program::{Code, Instruction, Operation, Program};
-use fearless_simd::{Level, Simd, SimdBase, dispatch};
+use fearless_simd::{Level, Simd, SimdBase};
 use std::marker::PhantomData;
 
 /// The marks of a batch. Numbers of objects and materials are whole; -1 where there is none.
@@ -72,7 +72,7 @@ pub fn marks<S: Simd>(s: S, program: &Program, w: &mut Workspace, n: usize) {
 
 #[inline(never)]
 fn run_marks(level: Level, code: &Code, params: &[f32], w: &mut Workspace, n: usize) {
-    dispatch!(level, s => run(s, code, params, w, n));
+    crate::at_level!(@avx2 level, s => run(s, code, params, w, n))
 }
 
 #[inline(always)]

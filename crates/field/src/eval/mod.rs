@@ -1,6 +1,7 @@
 //! Evaluators: a program over SIMD batches, with gradients, with marks, and over one point of any number type.
 
 mod batch;
+mod level;
 mod marks;
 mod point;
 
