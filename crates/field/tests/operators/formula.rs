@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use fearless_simd::{Level, Simd, dispatch, prelude::*};
+use fearless_simd::{Level, Simd, prelude::*};
 use zeroset_field::catalogue::{Join, Map, Modify};
 use zeroset_field::number::{Args, Dual, F64, Interval, Lanes, Real, Recorder, Slope, v3};
 
@@ -78,7 +78,7 @@ pub fn numbers<F: Formula>() -> Numbers {
             });
             F::eval(q, Args::new(a)).map(|r| (r.v, r.d))
         },
-        lanes: |level, q, a| dispatch!(level, s => lanes::<F, _>(s, q, a)),
+        lanes: |level, q, a| zeroset_field::at_level!(@avx2 level, s => lanes::<F, _>(s, q, a)),
         range: |q, a| F::eval(q, Args::new(a)),
         slope: |q, s, a| {
             let q = std::array::from_fn(|i| Slope {
@@ -129,9 +129,7 @@ pub fn levels() -> Vec<(&'static str, Level)> {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
         let best = Level::new();
-        levels.extend(best.as_sse4_2().map(|s| ("sse4.2", s.level())));
         levels.extend(best.as_avx2().map(|s| ("avx2", s.level())));
-        levels.extend(best.as_avx512().map(|s| ("avx512", s.level())));
     }
     levels
 }

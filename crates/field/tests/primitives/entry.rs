@@ -1,6 +1,6 @@
 //! An entry as a table of plain functions, so that the proofs compile once and not once an entry.
 
-use fearless_simd::{Level, Simd, dispatch, prelude::*};
+use fearless_simd::{Level, Simd, prelude::*};
 use zeroset_field::bounds::{Aabb, Exactness};
 use zeroset_field::catalogue::{Info, Primitive, Roughness};
 use zeroset_field::number::{Args, Dual, F64, Interval, Lanes, Recorder, v3};
@@ -53,7 +53,7 @@ pub fn entry<P: Primitive>() -> Entry {
             let d = P::distance(Dual::point(v3(p[0], p[1], p[2])), Args::new(a));
             (d.v, d.d)
         },
-        lanes: |level, points, a| dispatch!(level, s => lanes::<P, _>(s, points, a)),
+        lanes: |level, points, a| zeroset_field::at_level!(@avx2 level, s => lanes::<P, _>(s, points, a)),
         range: |b, a| P::distance(v3(b[0], b[1], b[2]), Args::new(a)),
         shader: shader::<P>,
         bounds: P::bounds,
@@ -97,15 +97,13 @@ fn shader<P: Primitive>() -> String {
     value + &recorder.function("gradient", &[d.d[0], d.d[1], d.d[2], d.v])
 }
 
-/// Every level of instructions that this machine has.
+/// The levels that formulas are compiled for here: programs are tested at all of them.
 pub fn levels() -> Vec<(&'static str, Level)> {
     let mut levels = vec![("baseline", Level::baseline())];
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
         let best = Level::new();
-        levels.extend(best.as_sse4_2().map(|s| ("sse4.2", s.level())));
         levels.extend(best.as_avx2().map(|s| ("avx2", s.level())));
-        levels.extend(best.as_avx512().map(|s| ("avx512", s.level())));
     }
     levels
 }
