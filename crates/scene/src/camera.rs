@@ -40,9 +40,18 @@ impl Camera {
     /// define a view.
     pub fn look_at(eye: Vec3, target: Vec3, up: Vec3, lens: Lens) -> Option<Camera> {
         let back = (eye - target).try_normalize()?;
-        let right = up.cross(back).try_normalize().or_else(|| back.any_orthonormal_vector().try_normalize())?;
+        let right = up
+            .cross(back)
+            .try_normalize()
+            .or_else(|| back.any_orthonormal_vector().try_normalize())?;
         let axes = Mat3::from_cols(right, back.cross(right), back);
-        Some(Camera { eye, axes, lens, near: 0.0, far: 1000.0 })
+        Some(Camera {
+            eye,
+            axes,
+            lens,
+            near: 0.0,
+            far: 1000.0,
+        })
     }
 
     /// The ray through a place on the picture: `x` and `y` in pixels from the top left corner, for a picture of this

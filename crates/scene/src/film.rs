@@ -77,8 +77,15 @@ impl Film {
     /// A black film. The caller has checked the size against its limits.
     pub fn new(width: u32, height: u32) -> Film {
         let pixels = width as usize * height as usize;
-        let planes = Plane::ALL.iter().map(|p| vec![0.0; pixels * p.channels()]).collect();
-        Film { width, height, planes }
+        let planes = Plane::ALL
+            .iter()
+            .map(|p| vec![0.0; pixels * p.channels()])
+            .collect();
+        Film {
+            width,
+            height,
+            planes,
+        }
     }
 
     /// Width in pixels.

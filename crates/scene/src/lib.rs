@@ -1,9 +1,18 @@
 //! Scenes: what a renderer gets. Valid by construction: finite numbers, resolved references, checked limits.
 
 pub mod camera;
+pub mod colour;
+mod draft;
+mod files;
 pub mod film;
+mod framing;
+mod images;
+pub mod language;
 pub mod light;
+pub mod limits;
+pub mod load;
 pub mod material;
 pub mod render;
+pub mod report;
 pub mod scene;
 pub mod settings;

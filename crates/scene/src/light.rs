@@ -62,6 +62,10 @@ impl Sky {
     /// Linear colour seen along a normalised direction: smooth from bottom over horizon to top.
     pub fn colour(&self, direction: Vec3) -> Vec3 {
         let y = direction.y;
-        if y >= 0.0 { self.horizon.lerp(self.top, y.sqrt()) } else { self.horizon.lerp(self.bottom, (-y).sqrt()) }
+        if y >= 0.0 {
+            self.horizon.lerp(self.top, y.sqrt())
+        } else {
+            self.horizon.lerp(self.bottom, (-y).sqrt())
+        }
     }
 }

@@ -101,7 +101,9 @@ pub struct Material {
 impl Default for Material {
     fn default() -> Self {
         Material {
-            pattern: Pattern::Solid { colour: Vec3::new(0.62, 0.60, 0.57) },
+            pattern: Pattern::Solid {
+                colour: Vec3::new(0.62, 0.60, 0.57),
+            },
             specular: 0.25,
             shininess: 40.0,
             metallic: 0.0,

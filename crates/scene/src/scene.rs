@@ -49,7 +49,10 @@ impl Scene {
     /// A tree too deep.
     pub fn field(&self) -> Result<Option<Field>, FieldError> {
         let painted = self.objects.iter().zip(0..).map(|(object, number)| {
-            object.field.paint(Paint::Material(object.material))?.paint(Paint::Object(number))
+            object
+                .field
+                .paint(Paint::Material(object.material))?
+                .paint(Paint::Object(number))
         });
         let shapes = painted.collect::<Result<Vec<Field>, FieldError>>()?;
         if shapes.is_empty() {

@@ -217,8 +217,14 @@ impl Default for Settings {
             footprint: 0.5,
             normals: Normals::Tetrahedron,
             shading: Shading::Phong,
-            occlusion: Occlusion::Cones { reach: 1.5, steps: 5 },
-            antialias: Antialias::Supersample { samples: 4, filter: Filter::Mitchell },
+            occlusion: Occlusion::Cones {
+                reach: 1.5,
+                steps: 5,
+            },
+            antialias: Antialias::Supersample {
+                samples: 4,
+                filter: Filter::Mitchell,
+            },
             seed: 0,
             exposure: 0.0,
         }

@@ -1,0 +1,249 @@
+//! Which names belong to whom: the variables of a function, and names that nothing gives a value.
+
+use super::mistake::{Run, mistake};
+use crate::report::{Place, suggestion};
+use starlark_syntax::syntax::ast::{
+    AssignTargetP, AstAssignTarget, AstExpr, AstNoPayload, AstParameter, AstStmt, ClauseP, ExprP,
+    ForClauseP, ParameterP, StmtP,
+};
+use std::collections::HashSet;
+use std::rc::Rc;
+
+/// The variables of a function, parameters first.
+pub(crate) type Locals<'a> = Rc<[&'a str]>;
+
+/// The variables of a function.
+pub(crate) fn locals<'a>(params: &'a [AstParameter], body: Option<&'a AstStmt>) -> Locals<'a> {
+    let mut names = Vec::new();
+    for param in params {
+        if let Some(ident) = param.node.ident() {
+            add(&mut names, &ident.node.ident);
+        }
+    }
+    if let Some(body) = body {
+        assigned(body, &mut names);
+    }
+    names.into()
+}
+
+/// The variables of a target such as `(a, b)`.
+pub(crate) fn targets<'a>(target: &'a AstAssignTarget, names: &mut Vec<&'a str>) {
+    match &target.node {
+        AssignTargetP::Tuple(items) => items.iter().for_each(|t| targets(t, names)),
+        AssignTargetP::Identifier(ident) => add(names, &ident.node.ident),
+        AssignTargetP::Index(_) | AssignTargetP::Dot(..) => {}
+    }
+}
+
+fn add<'a>(names: &mut Vec<&'a str>, name: &'a str) {
+    if !names.contains(&name) {
+        names.push(name);
+    }
+}
+
+/// The names that a block assigns, nested functions left out.
+fn assigned<'a>(stmt: &'a AstStmt, names: &mut Vec<&'a str>) {
+    match &stmt.node {
+        StmtP::Assign(assign) => targets(&assign.lhs, names),
+        StmtP::AssignModify(target, ..) => targets(target, names),
+        StmtP::For(f) => {
+            targets(&f.var, names);
+            assigned(&f.body, names);
+        }
+        StmtP::Def(def) => add(names, &def.name.node.ident),
+        StmtP::Load(load) => load
+            .args
+            .iter()
+            .for_each(|arg| add(names, &arg.local.node.ident)),
+        _ => stmt.visit_stmt(|s| assigned(s, names)),
+    }
+}
+
+/// Looks for names that nothing gives a value.
+pub(crate) struct Check<'a, F> {
+    builtin: F,
+    file: u32,
+    globals: HashSet<&'a str>,
+    /// Names of functions and comprehensions around, innermost last.
+    around: Vec<Vec<&'a str>>,
+}
+
+impl<'a, F: Fn(&str) -> bool> Check<'a, F> {
+    /// Checks a module. `builtin` knows the names that are always there, `all` lists them.
+    pub(crate) fn module(
+        file: u32,
+        module: &'a AstStmt,
+        builtin: F,
+        all: impl Iterator<Item = &'static str>,
+    ) -> Run<()> {
+        let mut names = Vec::new();
+        assigned(module, &mut names);
+        let mut check = Check {
+            builtin,
+            file,
+            globals: names.into_iter().collect(),
+            around: Vec::new(),
+        };
+        check.stmt(module).map_err(|(name, place)| {
+            let mut names: Vec<&str> = check
+                .around
+                .iter()
+                .flatten()
+                .chain(&check.globals)
+                .copied()
+                .collect();
+            names.extend(all.map(|name| name as &str));
+            mistake(format!("there is no `{name}`"))
+                .maybe_help(suggestion(&name, names.iter().copied()))
+                .at(place)
+        })
+    }
+
+    fn stmt(&mut self, stmt: &'a AstStmt) -> Result<(), (String, Place)> {
+        if let StmtP::Def(def) = &stmt.node {
+            return self.function(&def.params, locals(&def.params, Some(&def.body)), |c| {
+                c.stmt(&def.body)
+            });
+        }
+        let mut result = Ok(());
+        // visits this statement's own expressions and blocks, one level at a time
+        match &stmt.node {
+            StmtP::If(cond, body) => {
+                self.expr(cond)?;
+                return self.stmt(body);
+            }
+            StmtP::IfElse(cond, both) => {
+                self.expr(cond)?;
+                self.stmt(&both.0)?;
+                return self.stmt(&both.1);
+            }
+            StmtP::For(f) => {
+                self.expr(&f.over)?;
+                self.target(&f.var)?;
+                return self.stmt(&f.body);
+            }
+            StmtP::Statements(all) => return all.iter().try_for_each(|s| self.stmt(s)),
+            StmtP::Assign(assign) => {
+                self.expr(&assign.rhs)?;
+                return self.target(&assign.lhs);
+            }
+            StmtP::AssignModify(target, _, value) => {
+                self.expr(value)?;
+                return self.target(target);
+            }
+            _ => {}
+        }
+        stmt.visit_expr(|e| {
+            if result.is_ok() {
+                result = self.expr(e);
+            }
+        });
+        result
+    }
+
+    fn function(
+        &mut self,
+        params: &'a [AstParameter],
+        locals: Locals<'a>,
+        body: impl FnOnce(&mut Self) -> Result<(), (String, Place)>,
+    ) -> Result<(), (String, Place)> {
+        for param in params {
+            if let ParameterP::Normal(_, _, Some(default)) = &param.node {
+                self.expr(default)?;
+            }
+        }
+        self.around.push(locals.to_vec());
+        body(self)?;
+        self.around.pop();
+        Ok(())
+    }
+
+    fn target(&mut self, target: &'a AstAssignTarget) -> Result<(), (String, Place)> {
+        match &target.node {
+            AssignTargetP::Tuple(items) => items.iter().try_for_each(|t| self.target(t)),
+            AssignTargetP::Index(both) => {
+                self.expr(&both.0)?;
+                self.expr(&both.1)
+            }
+            AssignTargetP::Dot(object, _) => self.expr(object),
+            AssignTargetP::Identifier(_) => Ok(()),
+        }
+    }
+
+    fn comprehension(
+        &mut self,
+        first: &'a ForClauseP<AstNoPayload>,
+        rest: &'a [ClauseP<AstNoPayload>],
+        items: &[&'a AstExpr],
+    ) -> Result<(), (String, Place)> {
+        self.expr(&first.over)?;
+        self.around.push(comprehension_names(first, rest));
+        for clause in rest {
+            match clause {
+                ClauseP::For(f) => self.expr(&f.over)?,
+                ClauseP::If(cond) => self.expr(cond)?,
+            }
+        }
+        items.iter().try_for_each(|e| self.expr(e))?;
+        self.around.pop();
+        Ok(())
+    }
+
+    fn expr(&mut self, expr: &'a AstExpr) -> Result<(), (String, Place)> {
+        match &expr.node {
+            ExprP::Identifier(ident) => {
+                let name = ident.node.ident.as_str();
+                let known = self.around.iter().any(|names| names.contains(&name))
+                    || self.globals.contains(name)
+                    || (self.builtin)(name);
+                let (start, end) = (ident.span.begin().get(), ident.span.end().get());
+                if known {
+                    Ok(())
+                } else {
+                    Err((
+                        name.to_string(),
+                        Place {
+                            file: self.file,
+                            start,
+                            end,
+                        },
+                    ))
+                }
+            }
+            ExprP::Lambda(lambda) => {
+                self.function(&lambda.params, locals(&lambda.params, None), |c| {
+                    c.expr(&lambda.body)
+                })
+            }
+            ExprP::ListComprehension(item, first, rest) => self.comprehension(first, rest, &[item]),
+            ExprP::DictComprehension(pair, first, rest) => {
+                self.comprehension(first, rest, &[&pair.0, &pair.1])
+            }
+            ExprP::FString(f) => f.node.expressions.iter().try_for_each(|e| self.expr(e)),
+            node => {
+                let mut result = Ok(());
+                node.visit_expr(|e| {
+                    if result.is_ok() {
+                        result = self.expr(e);
+                    }
+                });
+                result
+            }
+        }
+    }
+}
+
+/// The variables of a comprehension.
+pub(crate) fn comprehension_names<'a>(
+    first: &'a ForClauseP<AstNoPayload>,
+    rest: &'a [ClauseP<AstNoPayload>],
+) -> Vec<&'a str> {
+    let mut names = Vec::new();
+    targets(&first.var, &mut names);
+    for clause in rest {
+        if let ClauseP::For(f) = clause {
+            targets(&f.var, &mut names);
+        }
+    }
+    names
+}

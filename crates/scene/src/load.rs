@@ -1,0 +1,330 @@
+//! Loading: from a scene file, or its text, to a [`Scene`].
+
+use crate::draft::Draft;
+use crate::files::{Files, read_ordinary};
+use crate::language;
+use crate::language::mistake::{Mistake, Run, mistake};
+use crate::language::module::{Module, parse};
+use crate::limits::Limits;
+use crate::report::{Place, Report, Source};
+use crate::scene::Scene;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// What is given beside the file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Options {
+    /// Parameters by name, each as text.
+    pub set: BTreeMap<String, String>,
+    /// Seconds of the animation.
+    pub time: f64,
+    /// Width and height that replace the file's.
+    pub size: Option<[u32; 2]>,
+    /// What the scene may cost.
+    pub limits: Limits,
+}
+
+/// A scene with what loading found out.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// The scene.
+    pub scene: Scene,
+    /// What can be changed from outside, in the order of the file.
+    pub parameters: Vec<Parameter>,
+    /// Whether the scene asked for the time.
+    pub animated: bool,
+    /// Every file that was read, the scene's own first.
+    pub files: Vec<PathBuf>,
+    /// What the script printed, line by line.
+    pub log: Vec<String>,
+}
+
+/// A scene that could not be loaded. Boxed: it carries the file's text.
+#[derive(Debug)]
+pub struct Failed {
+    /// Why.
+    pub report: Box<Report>,
+    /// Every file that was asked for, the scene's own first: when one of them changes, loading is worth another try.
+    pub files: Vec<PathBuf>,
+}
+
+impl std::fmt::Display for Failed {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.report.fmt(f)
+    }
+}
+
+impl std::error::Error for Failed {}
+
+/// Something that can be changed from outside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Its name.
+    pub name: String,
+    /// How it is changed.
+    pub control: Control,
+    /// What it is.
+    pub value: Setting,
+    /// What it is when nobody changes it.
+    pub default: Setting,
+    /// Where it is declared: (file, line, column), 1-based.
+    pub place: Option<(String, u32, u32)>,
+}
+
+/// How a parameter is changed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Control {
+    /// A number in a range.
+    Slider {
+        /// Smallest value.
+        min: f64,
+        /// Largest value.
+        max: f64,
+    },
+    /// One of several words.
+    Choice {
+        /// The words.
+        options: Vec<String>,
+    },
+    /// On or off.
+    Toggle,
+    /// A colour.
+    Colour,
+}
+
+/// The value of a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Setting {
+    /// Of a slider.
+    Number(f64),
+    /// Of a choice.
+    Text(String),
+    /// Of a toggle.
+    Flag(bool),
+    /// Of a colour: sRGB, 0 to 1.
+    Colour([f64; 3]),
+}
+
+/// The language of a scene's text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Language {
+    /// Starlark, `.star`.
+    Starlark,
+}
+
+/// Stack of the thread that loads: the parser and the interpreter recurse as deep as the text nests, which is limited.
+const STACK: usize = 64 << 20;
+
+/// Loads a scene file. Files that it loads lie in its own folder.
+///
+/// # Errors
+/// Everything that can be wrong with it, with the place and what to do.
+pub fn load(path: &Path, options: &Options) -> Result<Loaded, Failed> {
+    let fail = |message: String| Failed {
+        report: Report::new(message).into(),
+        files: vec![path.to_path_buf()],
+    };
+    let file_name = path
+        .file_name()
+        .and_then(|n| n.to_str())
+        .unwrap_or("scene")
+        .to_string();
+    let language = match path.extension().and_then(|e| e.to_str()) {
+        Some("star") => Language::Starlark,
+        _ => {
+            return Err(fail(format!(
+                "{}: a scene file ends in .star or .json",
+                path.display()
+            )));
+        }
+    };
+    let bytes = read_ordinary(path, &file_name, options.limits.file_bytes, "file_bytes");
+    let bytes = bytes.map_err(|e| fail(e.to_string()))?;
+    let text =
+        String::from_utf8(bytes).map_err(|_| fail(format!("{file_name} is not text in UTF-8")))?;
+    let folder = path
+        .parent()
+        .filter(|p| !p.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    let result = load_from(
+        &file_name,
+        text,
+        language,
+        Some(folder.to_path_buf()),
+        options,
+    );
+    let own = |mut files: Vec<PathBuf>| {
+        files.insert(0, path.to_path_buf());
+        files
+    };
+    match result {
+        Ok(loaded) => Ok(Loaded {
+            files: own(loaded.files),
+            ..loaded
+        }),
+        Err(failed) => Err(Failed {
+            files: own(failed.files),
+            ..failed
+        }),
+    }
+}
+
+/// Loads a scene from its text. `root` is the folder that it may load files from, if any.
+///
+/// # Errors
+/// Everything that can be wrong with it, with the place and what to do.
+pub fn load_text(
+    name: &str,
+    text: &str,
+    language: Language,
+    root: Option<&Path>,
+    options: &Options,
+) -> Result<Loaded, Failed> {
+    load_from(
+        name,
+        text.to_string(),
+        language,
+        root.map(Path::to_path_buf),
+        options,
+    )
+}
+
+fn load_from(
+    name: &str,
+    text: String,
+    language: Language,
+    root: Option<PathBuf>,
+    options: &Options,
+) -> Result<Loaded, Failed> {
+    let (name, options) = (name.to_string(), options.clone());
+    let work = move || match language {
+        Language::Starlark => load_starlark(&name, text, root, &options),
+    };
+    let thread = std::thread::Builder::new()
+        .name("scene".into())
+        .stack_size(STACK)
+        .spawn(work);
+    let broken = |message: &str| Failed {
+        report: Report::new(message).into(),
+        files: Vec::new(),
+    };
+    let thread = thread.map_err(|e| broken(&format!("cannot start a thread: {e}")))?;
+    thread.join().unwrap_or_else(|_| {
+        Err(broken(
+            "the scene loader broke down; please report this scene as a bug",
+        ))
+    })
+}
+
+fn load_starlark(
+    name: &str,
+    text: String,
+    root: Option<PathBuf>,
+    options: &Options,
+) -> Result<Loaded, Failed> {
+    let start = Instant::now();
+    let mut loader = Loader {
+        files: Files::new(root, options.limits.files.saturating_sub(1)),
+        sources: Vec::new(),
+        modules: Vec::new(),
+        names: BTreeMap::new(),
+        limits: options.limits,
+    };
+    let failed = |report: Report, files: Vec<PathBuf>| Failed {
+        report: report.into(),
+        files,
+    };
+    if let Err(m) = loader.module(name, text) {
+        return Err(failed(
+            m.report(&loader.sources),
+            loader.files.into_loaded(),
+        ));
+    }
+    let draft = Draft::new(options, loader.files, loader.sources);
+    let (mut draft, result) = language::run(&loader.modules, draft, &options.limits, start);
+    let files = draft.files.loaded().to_vec();
+    if let Err(m) = result {
+        return Err(failed(m.report(&draft.sources), files));
+    }
+    let parameters = std::mem::take(&mut draft.parameters);
+    let (animated, log) = (draft.animated, std::mem::take(&mut draft.log));
+    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+    match draft.finish(stem.to_string(), &options.limits) {
+        Ok(scene) => Ok(Loaded {
+            scene,
+            parameters,
+            animated,
+            files,
+            log,
+        }),
+        Err(message) => Err(failed(Report::new(message).in_file(name), files)),
+    }
+}
+
+/// Parses a file and all that it loads.
+struct Loader {
+    files: Files,
+    sources: Vec<Source>,
+    modules: Vec<Module>,
+    /// Modules by their path in the folder; `None` while one is being loaded.
+    names: BTreeMap<String, Option<u32>>,
+    limits: Limits,
+}
+
+impl Loader {
+    /// Parses a file, after all that it loads. Gives the number of its module.
+    fn module(&mut self, name: &str, text: String) -> Run<u32> {
+        let file = self.sources.len() as u32;
+        self.sources.push(Source {
+            name: name.to_string(),
+            text: Arc::from(text.as_str()),
+        });
+        self.names.insert(name.to_string(), None);
+        let ast = parse(file, name, &text, &self.limits)?;
+        let wanted: Vec<(String, Place)> = (ast.loads().into_iter())
+            .map(|l| {
+                let place = Place {
+                    file,
+                    start: l.span.span.begin().get(),
+                    end: l.span.span.end().get(),
+                };
+                (l.module_id.to_string(), place)
+            })
+            .collect();
+        let mut loads = std::collections::HashMap::new();
+        for (path, place) in wanted {
+            let module = self.loaded(&path).map_err(|m: Box<Mistake>| m.at(place))?;
+            loads.insert(path, module);
+        }
+        self.modules.push(Module { file, ast, loads });
+        let number = self.modules.len() as u32 - 1;
+        self.names.insert(name.to_string(), Some(number));
+        Ok(number)
+    }
+
+    /// The number of a module that a `load` names.
+    fn loaded(&mut self, path: &str) -> Run<u32> {
+        let name = Files::normal(path).map_err(|e| mistake(e.to_string()))?;
+        match self.names.get(&name) {
+            Some(Some(number)) => return Ok(*number),
+            Some(None) => {
+                let m = mistake(format!(
+                    "\"{path}\" loads itself, directly or by way of others"
+                ));
+                return Err(m.help("move what both need into a third file"));
+            }
+            None => {}
+        }
+        if !name.ends_with(".star") {
+            return Err(mistake(format!("\"{path}\" does not end in .star"))
+                .help("only scene files can be loaded"));
+        }
+        let text = self
+            .files
+            .read_text(&name, self.limits.file_bytes)
+            .map_err(|e| mistake(e.to_string()))?;
+        self.module(&name, text)
+    }
+}

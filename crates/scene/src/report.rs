@@ -1,0 +1,197 @@
+//! What a person is told when a scene cannot be loaded: where, what, and what to do.
+
+use miette::{Diagnostic, LabeledSpan, NamedSource, Severity, SourceCode};
+use std::fmt;
+use std::sync::Arc;
+
+/// A file's text, as far as messages need it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Source {
+    /// Its name as it is shown: relative to the scene's folder.
+    pub name: String,
+    /// Its text.
+    pub text: Arc<str>,
+}
+
+/// A piece of a file's text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// Which file: the number of its [`Source`].
+    pub file: u32,
+    /// First byte.
+    pub start: u32,
+    /// One past the last byte.
+    pub end: u32,
+}
+
+/// Why a scene cannot be loaded. Printed by any `miette` handler, or as one line by [`fmt::Display`].
+#[derive(Clone, Debug)]
+pub struct Report {
+    message: String,
+    help: Option<String>,
+    source: Option<NamedSource<Arc<str>>>,
+    name: String,
+    label: Option<LabeledSpan>,
+    /// Line and column of the place, 1-based; the column counts characters.
+    position: Option<(usize, usize)>,
+    /// Where the place was called from, innermost first.
+    trace: Vec<String>,
+}
+
+impl Report {
+    /// A report without a place.
+    pub fn new(message: impl Into<String>) -> Report {
+        Report {
+            message: message.into(),
+            help: None,
+            source: None,
+            name: String::new(),
+            label: None,
+            position: None,
+            trace: Vec::new(),
+        }
+    }
+
+    /// With a hint what to do.
+    pub fn with_help(mut self, help: impl Into<String>) -> Report {
+        self.help = Some(help.into());
+        self
+    }
+
+    /// With the name of the file alone.
+    pub fn in_file(mut self, name: impl Into<String>) -> Report {
+        self.name = name.into();
+        self
+    }
+
+    /// With a place in a file.
+    pub fn at(mut self, source: &Source, place: Place) -> Report {
+        let length = source.text.len();
+        let start = floor_char(&source.text, (place.start as usize).min(length));
+        let end = floor_char(&source.text, (place.end as usize).clamp(start, length));
+        self.position = Some(position(&source.text, start));
+        self.label = Some(LabeledSpan::new(None, start, end - start));
+        self.source = Some(NamedSource::new(source.name.clone(), source.text.clone()));
+        self.name.clone_from(&source.name);
+        self
+    }
+
+    /// With where the place was called from.
+    pub(crate) fn called_from(mut self, source: &Source, place: Place) -> Report {
+        let (line, column) = position(&source.text, floor_char(&source.text, place.start as usize));
+        self.trace.push(format!("{}:{line}:{column}", source.name));
+        self
+    }
+
+    /// What is wrong.
+    pub fn message(&self) -> &str {
+        &self.message
+    }
+
+    /// What to do.
+    pub fn hint(&self) -> Option<&str> {
+        self.help.as_deref()
+    }
+
+    /// Name of the file, if there is one.
+    pub fn file(&self) -> Option<&str> {
+        (!self.name.is_empty()).then_some(self.name.as_str())
+    }
+
+    /// Line and column, 1-based; the column counts characters.
+    pub fn position(&self) -> Option<(usize, usize)> {
+        self.position
+    }
+}
+
+/// The largest boundary between characters that is not beyond `at`.
+fn floor_char(text: &str, at: usize) -> usize {
+    (0..=at.min(text.len()))
+        .rev()
+        .find(|&i| text.is_char_boundary(i))
+        .unwrap_or(0)
+}
+
+/// Line and column of a byte, 1-based.
+pub(crate) fn position(text: &str, at: usize) -> (usize, usize) {
+    let before = &text[..at];
+    let line_start = before.rfind('\n').map_or(0, |i| i + 1);
+    (
+        before.matches('\n').count() + 1,
+        before[line_start..].chars().count() + 1,
+    )
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Report {}
+
+impl Diagnostic for Report {
+    fn severity(&self) -> Option<Severity> {
+        Some(Severity::Error)
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        let mut text = self.help.clone().unwrap_or_default();
+        for place in &self.trace {
+            let line = if text.is_empty() { "" } else { "\n" };
+            text += &format!("{line}called from {place}");
+        }
+        (!text.is_empty()).then(|| Box::new(text) as Box<dyn fmt::Display>)
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.source.as_ref().map(|s| s as &dyn SourceCode)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        self.label
+            .clone()
+            .map(|l| Box::new(std::iter::once(l)) as Box<dyn Iterator<Item = LabeledSpan>>)
+    }
+}
+
+/// The name among `names` that `given` was most likely meant to be.
+pub fn nearest<'a>(given: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let lower = given.to_lowercase();
+    let scored = names.into_iter().map(|name| {
+        let plain = |s: &str| s.replace('_', "").to_lowercase();
+        let same = plain(name) == plain(given);
+        let distance = strsim::osa_distance(&lower, &name.to_lowercase());
+        (if same { 0 } else { distance }, name)
+    });
+    let (distance, name) = scored.min()?;
+    let allowed = (given.chars().count().max(name.chars().count()) / 3).clamp(1, 3);
+    (distance <= allowed).then_some(name)
+}
+
+/// "did you mean ...?" for an unknown name, or the list of all there are where nothing is near and the list is short.
+pub(crate) fn suggestion<'a>(
+    given: &str,
+    names: impl IntoIterator<Item = &'a str> + Clone,
+) -> Option<String> {
+    if let Some(name) = nearest(given, names.clone()) {
+        return Some(format!("did you mean `{name}`?"));
+    }
+    let all: Vec<&str> = names.into_iter().collect();
+    match all.as_slice() {
+        [] => None,
+        [one] => Some(format!("there is only `{one}`")),
+        _ if all.len() <= 16 => Some(format!("there are {}", listing(&all))),
+        _ => None,
+    }
+}
+
+/// `a`, `b` and `c`.
+pub(crate) fn listing(names: &[&str]) -> String {
+    let quoted: Vec<String> = names.iter().map(|n| format!("`{n}`")).collect();
+    match quoted.split_last() {
+        None => String::new(),
+        Some((last, [])) => last.clone(),
+        Some((last, rest)) => format!("{} and {last}", rest.join(", ")),
+    }
+}
