@@ -10,6 +10,7 @@ use crate::bounds::{Aabb, Exactness};
 use crate::number::{Args, Real, Vec2, Vec3, length2, v2, v3};
 
 pub mod entries;
+pub mod flat;
 pub mod fractal;
 pub mod join;
 pub mod join_edge;
