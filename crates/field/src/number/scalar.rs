@@ -152,6 +152,22 @@ macro_rules! real {
                 $put($get(self).atan2($get(x)))
             }
             #[inline(always)]
+            fn asin(self) -> $t {
+                $put($get(Real::clamp(self, -1.0, 1.0)).asin())
+            }
+            #[inline(always)]
+            fn acos(self) -> $t {
+                $put($get(Real::clamp(self, -1.0, 1.0)).acos())
+            }
+            #[inline(always)]
+            fn atan(self) -> $t {
+                $put($get(self).atan())
+            }
+            #[inline(always)]
+            fn tanh(self) -> $t {
+                $put($get(self).tanh())
+            }
+            #[inline(always)]
             fn powf(self, k: $t) -> $t {
                 let x = $get(self);
                 $put(if x < 0.0 {

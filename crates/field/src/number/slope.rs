@@ -1,93 +1,431 @@
-//! A range, a range of gradients, and a bound on the gradient's length: for proofs of Lipschitz constants.
-use super::{interval::*, real::*, vector::*};
-use std::ops::*;
+//! A range, a range of gradients, and a bound on the gradient's length over a box: for proofs of Lipschitz constants.
+//!
+//! The ranges of the three derivatives alone give up to sqrt(3) times too much where a gradient turns within the box (a
+//! sphere: each derivative reaches 1). The bound on the length follows the chain rule on its own, and through
+//! [`Real::norm`] it stays at 1.
+//!
+//! What is proven holds for any two points of the box, since a box is convex: a function that is continuous there and whose
+//! pieces have gradients of length at most l changes by at most l times the way between the points. Where a function may
+//! jump (a step, the cut of `atan2`, a loop that may end early, [`Real::choose`]) the bound is infinite.
+
+use super::interval::{Interval, Maybe, around, product, up};
+use super::real::{Ends, Masked, Ops, Real, State};
+use super::vector::{Vec3, v3};
+use std::f64::consts::LN_2;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// What a value and its gradient may be over a box.
 #[derive(Clone, Copy, Debug)]
-pub struct Slope { pub v: Interval, pub d: [Interval; 3], pub l: f64 }
-fn len(d: [Interval; 3]) -> f64 { let s: f64 = d.iter().map(|x| x.mag() * x.mag()).sum(); if s.is_nan() { f64::INFINITY } else { s.sqrt() * (1.0 + 1e-15) } }
-fn times(a: f64, b: f64) -> f64 { if a == 0.0 || b == 0.0 { 0.0 } else { a * b } }
-/// Largest singular value of the derivative J of v: sqrt(largest eigenvalue of J J^T) <= sqrt(largest row sum).
-fn rows<const N: usize>(v: [Slope; N]) -> f64 {
-    let gram = |i: usize, j: usize| if i == j { v[i].l * v[i].l } else { let s = (0..3).fold(Interval::point(0.0), |s, k| s + v[i].d[k] * v[j].d[k]); s.mag().min(times(v[i].l, v[j].l)) };
-    (0..N).map(|i| (0..N).map(|j| gram(i, j)).sum::<f64>()).fold(0.0, f64::max).sqrt() * (1.0 + 1e-14)
+pub struct Slope {
+    /// Range of the value.
+    pub v: Interval,
+    /// Ranges of the derivatives by x, y and z.
+    pub d: [Interval; 3],
+    /// Lipschitz constant over the box; infinite where none is proven.
+    pub l: f64,
 }
+
+const FLAT: [Interval; 3] = [Interval { lo: 0.0, hi: 0.0 }; 3];
+
+/// Product of two bounds, rounded up; what is zero stays so.
+fn bound(a: f64, b: f64) -> f64 {
+    let p = product(a, b);
+    if p == 0.0 && (a == 0.0 || b == 0.0) {
+        0.0
+    } else {
+        up(p)
+    }
+}
+
+/// Largest length of a vector whose components are in these ranges, rounded up.
+fn longest(d: [Interval; 3]) -> f64 {
+    let s = d.iter().fold(0.0, |s, x| {
+        let square = bound(x.mag(), x.mag());
+        if square == 0.0 { s } else { up(s + square) }
+    });
+    if s == 0.0 { 0.0 } else { up(s.sqrt()) }
+}
+
+/// Derivatives by axis `k` of the components of a vector.
+fn column<const N: usize>(v: &[Slope; N], k: usize) -> [Interval; N] {
+    v.map(|x| x.d[k])
+}
+
+/// Largest singular value of the derivative J of a vector: at most sqrt of the largest row sum of |J J^T| (Gershgorin 1931).
+fn singular<const N: usize>(v: &[Slope; N]) -> f64 {
+    let gram = |a: &Slope, b: &Slope| {
+        let dot = (0..3).fold(Interval::point(0.0), |s, k| s + a.d[k] * b.d[k]);
+        dot.mag().min(bound(a.l, b.l))
+    };
+    let row = |i: usize| {
+        let mut sum = bound(v[i].l, v[i].l);
+        for j in (0..N).filter(|j| *j != i) {
+            sum = up(sum + gram(&v[i], &v[j]));
+        }
+        sum
+    };
+    let largest = (0..N).map(row).fold(0.0, f64::max);
+    // a sum of nothing but zeros has been rounded up from zero
+    if v.iter().all(|x| x.l == 0.0) {
+        0.0
+    } else {
+        up(largest.sqrt())
+    }
+}
+
 impl Slope {
-    fn new(v: Interval, d: [Interval; 3], l: f64) -> Self { Slope { v, d, l: l.min(len(d)) } }
-    fn chain(self, v: Interval, s: Interval) -> Self { Slope::new(v, self.d.map(|x| x * s), times(self.l, s.mag())) }
-    fn flat(v: Interval) -> Self { Slope { v, d: [Interval::point(0.0); 3], l: 0.0 } }
+    /// The coordinates of a box: what a formula is given to have its slope proven there.
     pub fn point(p: Vec3<Interval>) -> Vec3<Slope> {
-        let (o, l) = (Interval::point(0.0), Interval::point(1.0));
-        v3(Slope { v: p.x, d: [l, o, o], l: 1.0 }, Slope { v: p.y, d: [o, l, o], l: 1.0 }, Slope { v: p.z, d: [o, o, l], l: 1.0 })
+        let axis = |v: Interval, k: usize| {
+            let mut d = FLAT;
+            d[k] = Interval::point(1.0);
+            Slope { v, d, l: 1.0 }
+        };
+        v3(axis(p.x, 0), axis(p.y, 1), axis(p.z, 2))
     }
-    fn pick(m: Maybe, v: Interval, a: Self, b: Self) -> Self {
-        match m { Maybe { no: false, .. } => Slope { v, ..a }, Maybe { yes: false, .. } => Slope { v, ..b }, _ => Slope::new(v, [0, 1, 2].map(|k| a.d[k].hull(b.d[k])), a.l.max(b.l)) }
+
+    fn new(v: Interval, d: [Interval; 3], l: f64) -> Self {
+        let l = if l.is_nan() { f64::INFINITY } else { l };
+        Slope {
+            v,
+            d,
+            l: l.min(longest(d)),
+        }
+    }
+
+    /// The same everywhere.
+    fn flat(v: Interval) -> Self {
+        Slope { v, d: FLAT, l: 0.0 }
+    }
+
+    /// With a jump somewhere in the box, perhaps.
+    fn jumping(v: Interval) -> Self {
+        Slope {
+            v,
+            d: [Interval::WHOLE; 3],
+            l: f64::INFINITY,
+        }
+    }
+
+    /// A step function, whose values are in `v`.
+    fn stepped(v: Interval) -> Self {
+        if v.lo < v.hi {
+            Slope::jumping(v)
+        } else {
+            Slope::flat(v)
+        }
+    }
+
+    /// The chain rule: `v` is the range of a function of self whose derivative is in `slope`.
+    fn chain(self, v: Interval, slope: Interval) -> Self {
+        Slope::new(v, self.d.map(|x| x * slope), bound(self.l, slope.mag()))
+    }
+
+    /// One of two functions that agree where the condition flips.
+    fn pick(m: Maybe, v: Interval, yes: Self, no: Self) -> Self {
+        if m.undecided() {
+            let d = [0, 1, 2].map(|k| yes.d[k].hull(no.d[k]));
+            Slope::new(v, d, yes.l.max(no.l))
+        } else if m.yes {
+            Slope { v, ..yes }
+        } else {
+            Slope { v, ..no }
+        }
     }
 }
-impl Neg for Slope { type Output = Self; fn neg(self) -> Self { Slope { v: -self.v, d: self.d.map(|x| -x), l: self.l } } }
-impl Add for Slope { type Output = Self; fn add(self, o: Self) -> Self { Slope::new(self.v + o.v, [0, 1, 2].map(|k| self.d[k] + o.d[k]), self.l + o.l) } }
-impl Sub for Slope { type Output = Self; fn sub(self, o: Self) -> Self { self + -o } }
-impl Mul for Slope { type Output = Self; fn mul(self, o: Self) -> Self { Slope::new(self.v * o.v, [0, 1, 2].map(|k| self.d[k] * o.v + o.d[k] * self.v), times(self.l, o.v.mag()) + times(o.l, self.v.mag())) } }
-impl Div for Slope { type Output = Self; fn div(self, o: Self) -> Self { let i = Interval::point(1.0) / o.v; self * o.chain(i, -(i * i)) } }
-macro_rules! sc { ($($t:ty),*) => {$(
-    impl Add<$t> for Slope { type Output = Self; fn add(self, o: $t) -> Self { Slope { v: self.v + o, ..self } } }
-    impl Sub<$t> for Slope { type Output = Self; fn sub(self, o: $t) -> Self { Slope { v: self.v - o, ..self } } }
-    impl Mul<$t> for Slope { type Output = Self; fn mul(self, o: $t) -> Self { self.chain(self.v * o, o.into()) } }
-    impl Div<$t> for Slope { type Output = Self; fn div(self, o: $t) -> Self { self.chain(self.v / o, Interval::point(1.0) / o) } }
-    impl Ops<$t> for Slope {
-        fn min(self, o: $t) -> Self { Slope::pick(self.v.below(o), self.v.min(o), self, Slope::flat(o.into())) }
-        fn max(self, o: $t) -> Self { Slope::pick(self.v.above(o), self.v.max(o), self, Slope::flat(o.into())) }
-        fn below(self, o: $t) -> Maybe { self.v.below(o) }
-        fn above(self, o: $t) -> Maybe { self.v.above(o) }
-    } )*}; }
-sc!(Interval, f32);
-impl Masked for Slope { type Mask = Maybe; }
+
+impl Neg for Slope {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Slope {
+            v: -self.v,
+            d: self.d.map(|x| -x),
+            l: self.l,
+        }
+    }
+}
+
+impl Add for Slope {
+    type Output = Self;
+    fn add(self, o: Self) -> Self {
+        let l = if self.l == 0.0 || o.l == 0.0 {
+            self.l + o.l
+        } else {
+            up(self.l + o.l)
+        };
+        Slope::new(self.v + o.v, [0, 1, 2].map(|k| self.d[k] + o.d[k]), l)
+    }
+}
+
+impl Sub for Slope {
+    type Output = Self;
+    fn sub(self, o: Self) -> Self {
+        self + -o
+    }
+}
+
+impl Mul for Slope {
+    type Output = Self;
+    fn mul(self, o: Self) -> Self {
+        let sum = self.chain(self.v, o.v) + o.chain(o.v, self.v);
+        Slope {
+            v: self.v * o.v,
+            ..sum
+        }
+    }
+}
+
+impl Div for Slope {
+    type Output = Self;
+    fn div(self, o: Self) -> Self {
+        self * o.recip()
+    }
+}
+
+macro_rules! flat_ops {
+    ($($rhs:ty),*) => {$(
+        impl Add<$rhs> for Slope {
+            type Output = Self;
+            fn add(self, o: $rhs) -> Self {
+                Slope { v: self.v + o, ..self }
+            }
+        }
+
+        impl Sub<$rhs> for Slope {
+            type Output = Self;
+            fn sub(self, o: $rhs) -> Self {
+                Slope { v: self.v - o, ..self }
+            }
+        }
+
+        impl Mul<$rhs> for Slope {
+            type Output = Self;
+            fn mul(self, o: $rhs) -> Self {
+                self.chain(self.v * o, o.into())
+            }
+        }
+
+        impl Div<$rhs> for Slope {
+            type Output = Self;
+            fn div(self, o: $rhs) -> Self {
+                self.chain(self.v / o, Interval::from(o).recip())
+            }
+        }
+
+        impl Ops<$rhs> for Slope {
+            fn min(self, o: $rhs) -> Self {
+                Slope::pick(self.v.below(o), self.v.min(o), self, Slope::flat(o.into()))
+            }
+            fn max(self, o: $rhs) -> Self {
+                Slope::pick(self.v.above(o), self.v.max(o), self, Slope::flat(o.into()))
+            }
+            fn below(self, o: $rhs) -> Maybe {
+                self.v.below(o)
+            }
+            fn above(self, o: $rhs) -> Maybe {
+                self.v.above(o)
+            }
+        }
+    )*};
+}
+flat_ops!(Interval, f32);
+
+impl Masked for Slope {
+    type Mask = Maybe;
+}
+
 impl Ops<Slope> for Slope {
-    fn min(self, o: Self) -> Self { Slope::pick(self.v.below(o.v), self.v.min(o.v), self, o) }
-    fn max(self, o: Self) -> Self { Slope::pick(self.v.above(o.v), self.v.max(o.v), self, o) }
-    fn below(self, o: Self) -> Maybe { self.v.below(o.v) }
-    fn above(self, o: Self) -> Maybe { self.v.above(o.v) }
+    fn min(self, o: Self) -> Self {
+        Slope::pick(self.v.below(o.v), self.v.min(o.v), self, o)
+    }
+    fn max(self, o: Self) -> Self {
+        Slope::pick(self.v.above(o.v), self.v.max(o.v), self, o)
+    }
+    fn below(self, o: Self) -> Maybe {
+        self.v.below(o.v)
+    }
+    fn above(self, o: Self) -> Maybe {
+        self.v.above(o.v)
+    }
 }
-impl State<Interval> for Slope { fn zip(self, o: Self, f: impl Fn(Interval, Interval) -> Interval + Copy) -> Self { let d = [0, 1, 2].map(|k| f(self.d[k], o.d[k])); Slope { v: f(self.v, o.v), d, l: len(d) } } }
+
+impl State<Interval> for Slope {
+    /// Two ends that a loop may come to: its value may jump from one to the other.
+    fn zip(self, o: Self, f: impl Fn(Interval, Interval) -> Interval + Copy) -> Self {
+        Slope::jumping(f(self.v, o.v))
+    }
+}
+
 impl Real for Slope {
     type Base = Interval;
     type Scalar = Interval;
     type Store = [f32];
-    fn param(s: &[f32], at: usize) -> Interval { s[at].into() }
-    fn constant(c: f64) -> Interval { Interval::constant(c) }
-    fn like(self, s: Interval) -> Self { Slope::flat(s) }
-    fn lit(self, c: f32) -> Self { Slope::flat(c.into()) }
-    fn select(m: Maybe, a: Self, b: Self) -> Self { Slope::pick(m, Interval::select(m, a.v, b.v), a, b) }
-    fn choose(m: Maybe, a: Self, b: Self) -> Self { let mut s = Slope::select(m, a, b); if m.yes && m.no { s.d = [WHOLE; 3]; s.l = f64::INFINITY; } s }
-    fn fract(self) -> Self { let mut s = self - self.floor(); s.v = self.v.fract(); s }
+
+    fn param(store: &[f32], at: usize) -> Interval {
+        Interval::param(store, at)
+    }
+    fn constant(c: f64) -> Interval {
+        Interval::constant(c)
+    }
+    fn like(self, s: Interval) -> Self {
+        Slope::flat(s)
+    }
+    fn lit(self, c: f32) -> Self {
+        Slope::flat(c.into())
+    }
+    fn select(m: Maybe, yes: Self, no: Self) -> Self {
+        Slope::pick(m, Interval::select(m, yes.v, no.v), yes, no)
+    }
+    fn choose(m: Maybe, yes: Self, no: Self) -> Self {
+        if m.undecided() {
+            Slope::jumping(yes.v.hull(no.v))
+        } else {
+            Slope::select(m, yes, no)
+        }
+    }
+
+    fn sqrt(self) -> Self {
+        let r = self.v.sqrt();
+        self.chain(r, Interval::point(0.5) / r)
+    }
+    fn abs(self) -> Self {
+        Slope::pick(self.v.below(0.0), self.v.abs(), -self, self)
+    }
+    fn floor(self) -> Self {
+        Slope::stepped(self.v.floor())
+    }
+    fn sign(self) -> Self {
+        Slope::stepped(self.v.sign())
+    }
+    fn sin_cos(self) -> (Self, Self) {
+        let (s, c) = self.v.sin_cos();
+        (self.chain(s, c), self.chain(c, -s))
+    }
+    fn exp(self) -> Self {
+        let e = self.v.exp();
+        self.chain(e, e)
+    }
+    fn exp2(self) -> Self {
+        let e = self.v.exp2();
+        self.chain(e, e * Interval::constant(LN_2))
+    }
+    fn ln(self) -> Self {
+        self.chain(self.v.ln(), self.v.recip())
+    }
+    fn atan2(self, x: Self) -> Self {
+        let angle = self.v.atan2(x.v);
+        if x.v.lo <= 0.0 && self.v.contains(0.0) {
+            return Slope::jumping(angle);
+        }
+        // (x dy - y dx) / (x^2 + y^2)
+        let i = (x.v.sq() + self.v.sq()).recip();
+        let slope = self.chain(angle, x.v * i) - x.chain(angle, self.v * i);
+        Slope { v: angle, ..slope }
+    }
+    fn powf(self, k: Interval) -> Self {
+        self.chain(self.v.powf(k), self.v.powf(k - 1.0) * k)
+    }
+    fn asin(self) -> Self {
+        let s = self.clamp(-1.0, 1.0);
+        s.chain(s.v.asin(), s.v.sq().one_minus().sqrt().recip())
+    }
+    fn acos(self) -> Self {
+        let c = self.clamp(-1.0, 1.0);
+        c.chain(c.v.acos(), -c.v.sq().one_minus().sqrt().recip())
+    }
+    fn atan(self) -> Self {
+        self.chain(self.v.atan(), (self.v.sq() + 1.0).recip())
+    }
+    fn tanh(self) -> Self {
+        let t = self.v.tanh();
+        self.chain(t, t.sq().one_minus())
+    }
+    fn sq(self) -> Self {
+        self.chain(self.v.sq(), self.v * 2.0)
+    }
+    fn recip(self) -> Self {
+        let i = self.v.recip();
+        self.chain(i, -i.sq())
+    }
+    fn norm<const N: usize>(v: [Self; N]) -> Self {
+        let r = Interval::norm(v.map(|x| x.v));
+        let unit = v.map(|x| x.v.unit(r));
+        let d = [0, 1, 2].map(|k| {
+            let column = column(&v, k);
+            let dot = (0..N).fold(Interval::point(0.0), |s, i| s + column[i] * unit[i]);
+            // a unit vector times the column
+            let reach = Interval::norm(column).hi;
+            dot.clip(-reach, reach)
+        });
+        Slope::new(r, d, singular(&v))
+    }
+    fn unit(self, norm: Self) -> Self {
+        let q = self / norm.max(1e-18);
+        Slope {
+            v: self.v.unit(norm.v),
+            ..q
+        }
+    }
+    fn fract(self) -> Self {
+        Slope {
+            v: self.v.fract(),
+            ..self - self.floor()
+        }
+    }
+    fn modulo<C: Copy>(self, c: C) -> Self
+    where
+        Self: Ops<C>,
+    {
+        let period = (self.lit(1.0) * c).v;
+        let start = (self / c).floor() * c;
+        Slope {
+            v: self.v.modulo(period),
+            ..Sub::<Slope>::sub(self, start)
+        }
+    }
+
     fn proven(self, lo: f32, hi: f32, at: Vec3<Self>, slope: f32) -> Self {
-        let axis = |k: usize| times(slope as f64, len([at.x.d[k], at.y.d[k], at.z.d[k]]));
-        let d = [0, 1, 2].map(|k| { let b = up(axis(k)); Interval { lo: self.d[k].lo.clamp(-b, b), hi: self.d[k].hi.clamp(-b, b) } });
-        Slope::new(self.v.proven(lo, hi, at.map(|c| c.v), slope), d, self.l.min(up(times(slope as f64, rows([at.x, at.y, at.z])))))
+        let at = at.array();
+        let d = [0, 1, 2].map(|k| {
+            let reach = bound(slope.into(), longest(column(&at, k)));
+            self.d[k].clip(-reach, reach)
+        });
+        let l = self.l.min(bound(slope.into(), singular(&at)));
+        Slope::new(self.v.clip(lo.into(), hi.into()), d, l)
     }
     fn bounded_slope(p: Vec3<Self>, slope: f32, f: impl Fn(Vec3<Self>) -> Self) -> Self {
-        let at = p.map(|c| c.v);
-        let (centre, reach) = middle(at);
         let direct = f(p).proven(f32::NEG_INFINITY, f32::INFINITY, p, slope);
-        if !reach.is_finite() { return direct; }
-        let around = f(centre.map(|c| Slope::flat(Interval::point(c)))).v;
-        let by = up(slope as f64 * reach);
-        Slope { v: direct.v.intersect(Interval::new(around.lo - by, around.hi + by)), ..direct }
+        let near = around(p.map(|c| c.v), slope, |centre| f(centre.map(Slope::flat)).v);
+        match near {
+            Some(near) => Slope {
+                v: direct.v.intersect(near),
+                ..direct
+            },
+            None => direct,
+        }
     }
-    fn whole(self) -> Self { Slope { v: self.v.whole(), ..self } }
-    fn sqrt(self) -> Self { let r = self.v.sqrt(); self.chain(r, Interval::point(0.5) / r) }
-    fn abs(self) -> Self { Slope::pick(self.v.below(0.0), self.v.abs(), -self, self) }
-    fn floor(self) -> Self { let f = self.v.floor(); self.chain(f, self.v.step_slope(f)) }
-    fn sin_cos(self) -> (Self, Self) { let (s, c) = self.v.sin_cos(); (self.chain(s, c), self.chain(c, -s)) }
-    fn exp(self) -> Self { let e = self.v.exp(); self.chain(e, e) }
-    fn ln(self) -> Self { self.chain(self.v.ln(), Interval::point(1.0) / self.v) }
-    fn atan2(self, x: Self) -> Self { let i = Interval::point(1.0) / (x.v.sq() + self.v.sq()); let mut r = self * Slope::flat(x.v * i) - x * Slope::flat(self.v * i); r.v = self.v.atan2(x.v); r }
-    fn powf(self, k: Interval) -> Self { let q = self.v.powf(k - 1.0); self.chain(q * self.v, q * k) }
-    fn norm<const N: usize>(v: [Self; N]) -> Self {
-        let u = v.map(|x| x.v);
-        let r = Interval::norm(u);
-        let mut d = [Interval::point(0.0); 3];
-        for i in 0..N { let q = u[i].unit(r); for k in 0..3 { d[k] = d[k] + v[i].d[k] * q; } }
-        Slope::new(r, d, rows(v))
+    fn whole(self) -> Self {
+        Slope {
+            v: self.v.whole(),
+            ..self
+        }
     }
-    fn repeat_while<T: State<Interval>>(limit: Interval, init: T, live: impl Fn(T) -> Maybe, step: impl Fn(T) -> T) -> T { Interval::repeat_while(limit, init, live, step) }
-    fn fold<const W: usize, T: State<Interval>>(s: &[f32], at: usize, ends: Ends, init: T, step: impl Fn(T, [Interval; W], [Interval; W]) -> T) -> T { Interval::fold(s, at, ends, init, step) }
+
+    fn repeat_while<T: State<Interval>>(
+        limit: Interval,
+        init: T,
+        live: impl Fn(T) -> Maybe,
+        step: impl Fn(T) -> T,
+    ) -> T {
+        Interval::repeat_while(limit, init, live, step)
+    }
+    fn fold<const W: usize, T: State<Interval>>(
+        store: &[f32],
+        at: usize,
+        ends: Ends,
+        init: T,
+        step: impl Fn(T, [Interval; W], [Interval; W]) -> T,
+    ) -> T {
+        Interval::fold(store, at, ends, init, step)
+    }
 }

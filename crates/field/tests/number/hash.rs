@@ -2,7 +2,7 @@
 
 use crate::formulas;
 use crate::support::{Formula, dual_lanes, lanes, levels, reference};
-use zeroset_field::number::{Args, Hash, Real, hash1, hash2, hash3, v3};
+use zeroset_field::number::{Args, Hash, hash1, hash2, hash3, v3};
 
 formulas! {
     One |p, a| hash1(p.x);
