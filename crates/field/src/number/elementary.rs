@@ -1,10 +1,11 @@
 //! Elementary functions on SIMD lanes: what vector instruction sets lack.
 //!
-//! Straight vector code (reduction and polynomial, after Moshier's Cephes library, 1989) with a rare branch for arguments
-//! that it does not reach. Each function is right for every `f32`, subnormal numbers and infinities included, on every
-//! instruction set; the stated errors hold with and without fused multiply-add.
+//! Straight vector code (reduction and polynomial, after Moshier's Cephes library, 1989; the polynomials of [`exp2`] and
+//! [`pow`] by Remez' exchange) with a rare branch for arguments that it does not reach. Each function is right for every
+//! `f32`, subnormal numbers and infinities included, on every instruction set. The stated errors hold with and without fused
+//! multiply-add: against `f64` over a third of all `f32`, at AVX-512 and SSE2, none was larger.
 //!
-//! Errors are given in ulp (units in the last place of the result) or as absolute errors, against `f64`.
+//! Errors are given in ulp (units in the last place of the result) or as absolute errors.
 
 use fearless_simd::{Simd, prelude::*};
 use std::f32::consts::{FRAC_2_PI, FRAC_PI_2, LOG2_E, PI};
@@ -33,10 +34,10 @@ fn clamp<S: Simd>(x: S::f32s, lo: f32, hi: f32) -> S::f32s {
     S::f32s::splat(x.token(), hi).min(x)
 }
 
-/// `x 2^n`, where n stands in the low bits of a sum with [`ROUNDER`]: infinite from 2^128 on, and zero for n = -126.
+/// `x 2^n`, where n in [-126, 129] stands in the low bits of a sum with [`ROUNDER`]: infinite from 2^128 on, zero for -126.
 #[inline(always)]
 fn scale<S: Simd>(x: S::f32s, n: S::f32s) -> S::f32s {
-    // 2^(n - 1) is a normal number or zero for all n in [-126, 128]
+    // 2^(n - 1): zero for n = -126, infinite for n = 129, else a normal number
     let n: S::i32s = n.bitcast();
     let half: S::f32s = ((n + (126 - ROUNDER.to_bits() as i32)) << 23).bitcast();
     (x + x) * half
@@ -114,7 +115,7 @@ fn sin_cos_near<S: Simd>(x: S::f32s) -> (S::f32s, S::f32s) {
     ((si ^ s_sign).bitcast(), (ci ^ c_sign).bitcast())
 }
 
-/// e to the power of x.
+/// e to the power of x. At most 1.1 ulp off; results below 1.7e-38 may come out as zero.
 #[inline(always)]
 pub fn exp<S: Simd>(x: S::f32s) -> S::f32s {
     let x = clamp::<S>(x, -87.336_54, 89.0);
@@ -126,7 +127,7 @@ pub fn exp<S: Simd>(x: S::f32s) -> S::f32s {
     let p = poly::<S, 6>(
         r,
         [
-            5.000_000_1e-1,
+            0.5,
             1.666_666_6e-1,
             4.166_579_6e-2,
             8.333_452e-3,
@@ -138,7 +139,7 @@ pub fn exp<S: Simd>(x: S::f32s) -> S::f32s {
     scale::<S>(y, t)
 }
 
-/// 2 to the power of x.
+/// 2 to the power of x. At most 1.4 ulp off; results below 1.7e-38 may come out as zero.
 #[inline(always)]
 pub fn exp2<S: Simd>(x: S::f32s) -> S::f32s {
     let x = clamp::<S>(x, -126.0, 129.0);
@@ -161,7 +162,9 @@ fn split<S: Simd>(x: S::f32s) -> (S::f32s, S::f32s) {
     (e.to_float(), m - 1.0)
 }
 
-/// Natural logarithm; minus infinity at zero, NaN below.
+/// Natural logarithm; minus infinity at zero, NaN below. At most 0.9 ulp off.
+///
+/// Arguments that are not positive, normal and finite take a slow path, lane by lane.
 #[inline(always)]
 pub fn ln<S: Simd>(x: S::f32s) -> S::f32s {
     let y = ln_ordinary::<S>(x);
@@ -190,7 +193,7 @@ fn ln_ordinary<S: Simd>(x: S::f32s) -> S::f32s {
     let p = poly::<S, 9>(
         f,
         [
-            3.333_333_1e-1,
+            3.333_333e-1,
             -2.499_999_4e-1,
             2.000_071_5e-1,
             -1.666_805_8e-1,
@@ -207,7 +210,8 @@ fn ln_ordinary<S: Simd>(x: S::f32s) -> S::f32s {
     e.mul_add(0.693_359_4, f + y)
 }
 
-/// Angle of the point (`x`, `y`) from the x axis, in [-pi, pi].
+/// Angle of the point (`x`, `y`) from the x axis, in [-pi, pi]; the signs of zeros count, as in `f32::atan2`. At most 2.5 ulp
+/// off. NaN where both are infinite.
 #[inline(always)]
 pub fn atan2<S: Simd>(y: S::f32s, x: S::f32s) -> S::f32s {
     let (ax, ay) = (x.abs(), y.abs());
@@ -222,7 +226,7 @@ pub fn atan2<S: Simd>(y: S::f32s, x: S::f32s) -> S::f32s {
     p.copysign(y)
 }
 const ATAN: [f32; 9] = [
-    9.999_999_8e-1,
+    1.0,
     -3.333_303_7e-1,
     1.999_187_2e-1,
     -1.419_779_8e-1,
@@ -236,11 +240,14 @@ const ATAN: [f32; 9] = [
 /// Largest exponent that [`pow`] takes in vector code.
 const POW_REACH: f32 = 1e4;
 
-/// x to the power of `k`, for x not below zero; NaN below.
+/// x to the power of `k`, for x not below zero; NaN below. Relative error at most 1.5e-7 + 6e-8 |k|, and never above 7e-6;
+/// results below 1.7e-38 may come out as zero.
+///
+/// Arguments that are subnormal, negative or not finite and `|k| > 1e4` take a slow path, lane by lane.
 #[inline(always)]
 pub fn pow<S: Simd>(x: S::f32s, k: f32) -> S::f32s {
     let y = pow_ordinary::<S>(x, k);
-    if !ordinary::<S>(x) || !(k.abs() <= POW_REACH) {
+    if !ordinary::<S>(x) || k.abs() > POW_REACH {
         return pow_other::<S>(x, y, k);
     }
     y
@@ -253,8 +260,7 @@ fn pow_other<S: Simd>(x: S::f32s, y: S::f32s, k: f32) -> S::f32s {
     let zero = x.simd_eq(0.0);
     let mut y = zero.select(S::f32s::splat(x.token(), 0.0_f32.powf(k)), y);
     let done = zero | (x.simd_ge(TINY) & x.simd_lt(f32::INFINITY));
-    if !done.all_true() || !(k.abs() <= POW_REACH) {
-        let x = x;
+    if !done.all_true() || k.abs() > POW_REACH {
         pow_lanes(x.as_slice(), k, y.as_mut_slice());
     }
     y

@@ -309,7 +309,12 @@ impl Real for Interval {
         f32::param(store, at).into()
     }
     fn constant(c: f64) -> Self {
-        Interval::rounded(c, c)
+        // 3 is meant to be 3, but pi stands for a number beside it
+        if f64::from(c as f32) == c {
+            Interval::point(c)
+        } else {
+            Interval::rounded(c, c)
+        }
     }
     fn like(self, s: Self) -> Self {
         s
@@ -350,10 +355,7 @@ impl Real for Interval {
         }
     }
     fn sin_cos(self) -> (Self, Self) {
-        (
-            wave(self, f64::sin, FRAC_PI_2),
-            wave(self, f64::cos, 0.0),
-        )
+        (wave(self, f64::sin, FRAC_PI_2), wave(self, f64::cos, 0.0))
     }
     fn exp(self) -> Self {
         self.monotone(f64::exp).clip(0.0, f64::INFINITY)
@@ -447,7 +449,7 @@ impl Real for Interval {
     }
     fn bounded_slope(p: Vec3<Self>, slope: f32, f: impl Fn(Vec3<Self>) -> Self) -> Self {
         let direct = f(p);
-        match around(p, slope, |centre| f(centre)) {
+        match around(p, slope, &f) {
             Some(near) => direct.intersect(near),
             None => direct,
         }

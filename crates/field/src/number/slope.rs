@@ -178,7 +178,8 @@ impl Mul for Slope {
 impl Div for Slope {
     type Output = Self;
     fn div(self, o: Self) -> Self {
-        self * o.recip()
+        let i = o.recip();
+        Mul::mul(self, i)
     }
 }
 

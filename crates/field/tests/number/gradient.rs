@@ -59,7 +59,9 @@ formulas! {
     Blends |p, a| p.x.smoothstep(-1.0, 1.5).mix(p.y, 0.3) + p.z.clamp(-0.5, p.x) + p.normalize().y;
 }
 
-const PARAMS: [f32; 12] = [1.2, 0.6, 0.9, 6.0, 3.0, 0.7, -0.5, -0.6, -0.4, 0.1, 0.8, 0.0];
+const PARAMS: [f32; 12] = [
+    1.2, 0.6, 0.9, 6.0, 3.0, 0.7, -0.5, -0.6, -0.4, 0.1, 0.8, 0.0,
+];
 
 /// Points where all of them are smooth, and some where they are not.
 fn coordinate() -> impl Strategy<Value = f32> {
@@ -73,7 +75,10 @@ fn point() -> impl Strategy<Value = [f32; 3]> {
 /// How little the gradient turns within `by` of a point: the test's own tolerance near edges and folds.
 fn turn<F: Formula>(p: [f32; 3], by: f64) -> f64 {
     let side = |k: usize| Interval::new(f64::from(p[k]) - by, f64::from(p[k]) + by);
-    let s = F::eval(Slope::point(v3(side(0), side(1), side(2))), Args::new(&PARAMS[..]));
+    let s = F::eval(
+        Slope::point(v3(side(0), side(1), side(2))),
+        Args::new(&PARAMS[..]),
+    );
     let range = |d: Interval| d.hi - d.lo;
     range(s.d[0]).max(range(s.d[1])).max(range(s.d[2]))
 }
@@ -99,7 +104,10 @@ fn by_differences<F: Formula>(p: [f32; 3]) -> Result<bool, TestCaseError> {
         };
         let difference = (at(h) - at(-h)) / (2.0 * h);
         let tolerance = turn + 1e-8 * (1.0 + g.v.0.abs() / h * 1e-4 + difference.abs());
-        prop_assert!((difference - g.d[k].0).abs() <= tolerance, "{difference} by differences, {g:?} at {p:?}");
+        prop_assert!(
+            (difference - g.d[k].0).abs() <= tolerance,
+            "{difference} by differences, {g:?} at {p:?}"
+        );
     }
     Ok(true)
 }
@@ -108,9 +116,21 @@ fn by_differences<F: Formula>(p: [f32; 3]) -> Result<bool, TestCaseError> {
 fn by_lanes<F: Formula>(points: &[[f32; 3]], tolerance: f64) -> Result<(), TestCaseError> {
     for (level, simd) in levels() {
         let values = lanes::<F>(simd, &PARAMS, points);
-        for ((p, got), v) in points.iter().zip(dual_lanes::<F>(simd, &PARAMS, points)).zip(values) {
-            prop_assert_eq!(got[0].to_bits(), v.to_bits(), "value with and without gradient at {:?}", p);
-            let near = turn::<F>(*p, 1e-6 * (1.0 + f64::from(p[0].abs().max(p[1].abs()).max(p[2].abs()))));
+        for ((p, got), v) in points
+            .iter()
+            .zip(dual_lanes::<F>(simd, &PARAMS, points))
+            .zip(values)
+        {
+            prop_assert_eq!(
+                got[0].to_bits(),
+                v.to_bits(),
+                "value with and without gradient at {:?}",
+                p
+            );
+            let near = turn::<F>(
+                *p,
+                1e-6 * (1.0 + f64::from(p[0].abs().max(p[1].abs()).max(p[2].abs()))),
+            );
             if near.is_nan() || near > 1e-2 {
                 continue;
             }
@@ -119,7 +139,10 @@ fn by_lanes<F: Formula>(points: &[[f32; 3]], tolerance: f64) -> Result<(), TestC
             let size = expected.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
             for k in 0..4 {
                 let error = (f64::from(got[k]) - expected[k]).abs();
-                prop_assert!(error <= tolerance * size + near, "{got:?} at {p:?} ({level}), should be {expected:?}");
+                prop_assert!(
+                    error <= tolerance * size + near,
+                    "{got:?} at {p:?} ({level}), should be {expected:?}"
+                );
             }
         }
     }
@@ -189,6 +212,9 @@ fn gradients_are_finite_where_there_is_none() {
         at(|x| x.acos(), 1.0),
         at(|x| x.tanh(), 100.0),
     ] {
-        assert!(g.v.0.is_finite() && g.d.iter().all(|d| d.0.is_finite()), "{g:?}");
+        assert!(
+            g.v.0.is_finite() && g.d.iter().all(|d| d.0.is_finite()),
+            "{g:?}"
+        );
     }
 }

@@ -46,14 +46,29 @@ fn a_range_without_its_ends_is_noticed() {
         };
         let r = tree.eval(place.intervals(), &mut |_| {});
         let tenth = 0.1 * (r.hi - r.lo);
-        miss(&tree, &place, Interval { lo: r.lo + tenth, hi: r.hi }).is_some()
+        miss(
+            &tree,
+            &place,
+            Interval {
+                lo: r.lo + tenth,
+                hi: r.hi,
+            },
+        )
+        .is_some()
     });
     let noticed = noticed.count();
-    assert!(noticed > 100, "{noticed} of 400 ranges that are a tenth short were noticed");
+    assert!(
+        noticed > 100,
+        "{noticed} of 400 ranges that are a tenth short were noticed"
+    );
 }
 
 fn at(tree: Tree, x: (f64, f64), y: (f64, f64)) -> Interval {
-    let p = v3(Interval::new(x.0, x.1), Interval::new(y.0, y.1), Interval::point(0.0));
+    let p = v3(
+        Interval::new(x.0, x.1),
+        Interval::new(y.0, y.1),
+        Interval::point(0.0),
+    );
     tree.eval(p, &mut |_| {})
 }
 
@@ -63,9 +78,18 @@ fn atan2() -> Tree {
 
 #[test]
 fn the_cut_of_atan2_is_the_whole_circle() {
-    for y in [(-0.1, 0.1), (0.0, 0.1), (-0.1, 0.0), (0.0, 0.0), (-0.0, -0.0)] {
+    for y in [
+        (-0.1, 0.1),
+        (0.0, 0.1),
+        (-0.1, 0.0),
+        (0.0, 0.0),
+        (-0.0, -0.0),
+    ] {
         let a = at(atan2(), (-2.0, -1.0), y);
-        assert!(a.contains(std::f64::consts::PI) && a.contains(-std::f64::consts::PI), "{a:?}");
+        assert!(
+            a.contains(std::f64::consts::PI) && a.contains(-std::f64::consts::PI),
+            "{a:?}"
+        );
     }
     let a = at(atan2(), (-2.0, -1.0), (0.1, 0.2));
     assert!(a.lo > 2.9 && a.hi < 3.1, "{a:?}");
@@ -82,17 +106,42 @@ fn ranges_are_tight() {
     assert!(width(x.sin()) < 0.1 && width(x.exp()) < 0.16 && width(x.acos()) < 0.11);
     assert!(width(Interval::new(1.2, 1.9).fract()) < 0.7 + 1e-12);
     assert_eq!(Interval::new(0.9, 1.1).fract(), Interval::new(0.0, 1.0));
-    let around = Interval::bounded_slope(Vec3::splat(Interval::new(-0.1, 0.1)), 1.0, |_| Interval::WHOLE);
+    let around = Interval::bounded_slope(Vec3::splat(Interval::new(-0.1, 0.1)), 1.0, |_| {
+        Interval::WHOLE
+    });
     assert_eq!(around, Interval::WHOLE);
 }
 
 #[test]
 fn no_range_is_made_of_nan() {
-    let ends = [f64::NEG_INFINITY, -1.0, -0.0, 0.0, 1.0, f64::MAX, f64::INFINITY];
+    let ends = [
+        f64::NEG_INFINITY,
+        -1.0,
+        -0.0,
+        0.0,
+        1.0,
+        f64::MAX,
+        f64::INFINITY,
+    ];
     for a in ends {
         for b in ends {
             let (x, y) = (Interval::point(a), Interval::new(a, b));
-            for r in [x + y, x - y, x * y, x / y, x.min(y), y.sqrt(), y.ln(), y.exp(), y.sin(), x.atan2(y), y.powf(x), y.fract(), x.modulo(y), y.recip()] {
+            for r in [
+                x + y,
+                x - y,
+                x * y,
+                x / y,
+                x.min(y),
+                y.sqrt(),
+                y.ln(),
+                y.exp(),
+                y.sin(),
+                x.atan2(y),
+                y.powf(x),
+                y.fract(),
+                x.modulo(y),
+                y.recip(),
+            ] {
                 assert!(r.lo <= r.hi, "{a} {b} {r:?}");
             }
         }
@@ -106,7 +155,9 @@ fn lists_that_lie_about_their_length_are_cut_short() {
     // three items are claimed (or any other number), two are there
     let sum = |store: &[f32], ends| {
         let a = Args::<f32>::new(store);
-        a.fold(ends, 0.0, |s, item: [f32; 2], next: [f32; 2]| s + item[0] * 10.0 + next[1])
+        a.fold(ends, 0.0, |s, item: [f32; 2], next: [f32; 2]| {
+            s + item[0] * 10.0 + next[1]
+        })
     };
     for count in [3.0, 1e30, f32::INFINITY] {
         assert_eq!(sum(&[count, 1.0, 2.0, 3.0, 4.0], Ends::Open), 14.0);

@@ -129,5 +129,8 @@ fn what_is_proven_elsewhere_clips() {
     let known = value.proven(-0.3, 0.2, p * 3.0, 0.5);
     assert!((known.l - 1.5).abs() < 1e-12, "{known:?}");
     assert!(known.d[0].mag() <= 1.5 + 1e-12 && known.d[1].mag() < 1.5 + 1e-12);
-    assert_eq!((known.v.lo, known.v.hi), (f64::from(-0.3_f32), f64::from(0.2_f32)));
+    assert_eq!(
+        (known.v.lo, known.v.hi),
+        (f64::from(-0.3_f32), f64::from(0.2_f32))
+    );
 }

@@ -243,20 +243,25 @@ pub fn place() -> impl Strategy<Value = Place> {
         1 => number().prop_map(|x| [x, x, -x]),
         1 => number().prop_map(|x| [x, x.next_up(), x.next_down()]),
     ];
-    let fraction = || prop_oneof![2 => -1.0_f64..1.0, 1 => Just(-1.0), 1 => Just(1.0), 1 => Just(0.0)];
+    let fraction =
+        || prop_oneof![2 => -1.0_f64..1.0, 1 => Just(-1.0), 1 => Just(1.0), 1 => Just(0.0)];
     let halves = prop_oneof![half().prop_map(|h| [h; 3]), [half(), half(), half()]];
-    (centre, halves, prop::collection::vec([fraction(), fraction(), fraction()], 12)).prop_map(
-        |(centre, half, inside)| Place {
+    (
+        centre,
+        halves,
+        prop::collection::vec([fraction(), fraction(), fraction()], 12),
+    )
+        .prop_map(|(centre, half, inside)| Place {
             centre: centre.map(f64::from),
             half,
             inside,
-        },
-    )
+        })
 }
 
 impl Place {
     pub fn intervals(&self) -> Vec3<Interval> {
-        let side = |k: usize| Interval::new(self.centre[k] - self.half[k], self.centre[k] + self.half[k]);
+        let side =
+            |k: usize| Interval::new(self.centre[k] - self.half[k], self.centre[k] + self.half[k]);
         v3(side(0), side(1), side(2))
     }
 
@@ -264,7 +269,9 @@ impl Place {
     pub fn points(&self) -> impl Iterator<Item = [f64; 3]> {
         let sides = self.intervals().array();
         self.inside.iter().map(move |t| {
-            std::array::from_fn(|k| (self.centre[k] + t[k] * self.half[k]).clamp(sides[k].lo, sides[k].hi))
+            std::array::from_fn(|k| {
+                (self.centre[k] + t[k] * self.half[k]).clamp(sides[k].lo, sides[k].hi)
+            })
         })
     }
 }
