@@ -119,12 +119,11 @@ pub fn reached(case: &Case<'_>) -> Result<(), Failure> {
     }
     let mut random = case.random(7);
     for p in case.places(500, 8) {
-        let value = case.value(p);
-        if case.entry.exactness == Exactness::Outside && value < 0.0 {
+        let (value, inside) = (case.value(p), case.contains(p));
+        if case.entry.exactness == Exactness::Outside && inside {
             continue;
         }
         let slack = SHORT.0 * value.abs() + SHORT.1 * case.size;
-        let inside = case.contains(p);
         let witness =
             |q: Point| distance(p, q) <= value.abs() + 1.001 * slack && case.contains(q) != inside;
         let mut found = false;
