@@ -1,9 +1,10 @@
 //! From the tree to the list: lowering, sharing, registers.
 
-use crate::bounds::Aabb;
+use crate::bounds::{Aabb, Exactness};
 use crate::catalogue::Stretch;
+use crate::catalogue::entries::catalogue;
 use crate::field::{Field, Node, Paint};
-use crate::formula::{Formula, Step};
+use crate::formula::{Binary, Formula, Step};
 use crate::op::code;
 use crate::placement::Placement;
 use crate::program::{Code, CompileError, Instruction, Limits, Operation, Program, Structure};
@@ -233,6 +234,24 @@ impl Lowering<'_> {
         Ok(value)
     }
 
+    /// The value of a repeated shape: at least the distance to its box, which the walls of repetitions count on. (A distance
+    /// bound may be less, and would jump where the copy enters the search.)
+    fn copy(&mut self, shape: &Field, cell: u32) -> Result<u32, CompileError> {
+        let value = self.field(shape, cell)?;
+        let value = self.unit(shape, value)?;
+        let facts = shape.facts();
+        if facts.exactness <= Exactness::Outside || facts.bounds.is_empty() {
+            return Ok(value);
+        }
+        let cuboid = catalogue()
+            .primitive("box")
+            .expect("the catalogue has a box");
+        let sides = facts.bounds.half().map(|h| (2.0 * h).min(FAR));
+        let params = centred(facts.bounds.centre(), &sides);
+        let around = self.leaf(cuboid.code, cell, &params)?;
+        self.pair(code::binary(Binary::Max), value, around, &[])
+    }
+
     fn repeat(
         &mut self,
         repetition: &Repetition,
@@ -251,8 +270,7 @@ impl Lowering<'_> {
             let seed = [f64::from(repetition.seed % 289)];
             let params = [&bits[..], &repetition.vary, &seed, &grid].concat();
             let cell = self.warp(code::REPEAT_CELL, point, &params)?;
-            let value = self.field(shape, cell)?;
-            let value = self.unit(shape, value)?;
+            let value = self.copy(shape, cell)?;
             nearest = Some(match nearest {
                 None => value,
                 Some(before) => self.pair(code::MIN, before, value, &[])?,
@@ -280,8 +298,7 @@ impl Lowering<'_> {
                 let turn = Placement::turned([0.0, 1.0, 0.0], -f64::from(copy) * polar.sector());
                 self.warp(code::RIGID, point, &inverse(&turn))?
             };
-            let value = self.field(shape, cell)?;
-            let value = self.unit(shape, value)?;
+            let value = self.copy(shape, cell)?;
             nearest = Some(match nearest {
                 None => value,
                 Some(before) => self.pair(code::MIN, before, value, &[])?,

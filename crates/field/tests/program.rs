@@ -426,3 +426,31 @@ fn boxes_of_placed_fields_hold_them() {
         "{bounds:?} is tight"
     );
 }
+
+/// Bounds that are less than the distance to their box: they must not jump where a copy enters the search.
+#[test]
+fn copies_of_bounds_do_not_jump() {
+    let mut r = Random(0x5eed_0009);
+    for name in ["sierpinski", "quadric", "box"] {
+        let leaning = primitive(name, &catalogue().primitive(name).unwrap().info.defaults())
+            .map(catalogue().map("shear").unwrap(), vec![0.5, 0.0])
+            .unwrap();
+        let grid = leaning.repeat(Repetition {
+            spacing: [3.3, 0.0, 3.3],
+            count: [3, 0, 0],
+            vary: [0.0, 0.9, 0.0],
+            seed: 1,
+        });
+        let ring = moved(&leaning, 8.0, 0.0, 0.0).polar(Polar { count: 12 });
+        for field in [grid.unwrap(), ring.unwrap()] {
+            let program = compiled(&field);
+            for _ in 0..20_000 {
+                let (p, step) = (r.point(10.0), r.point(1e-2));
+                let q: [f64; 3] = std::array::from_fn(|k| p[k] + step[k]);
+                let length = step.iter().map(|x| x * x).sum::<f64>().sqrt();
+                let slope = (value(&program, p) - value(&program, q)).abs() / length;
+                assert!(slope <= 1.0 + 1e-6, "{name}: slope {slope} at {p:?}");
+            }
+        }
+    }
+}
