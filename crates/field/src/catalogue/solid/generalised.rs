@@ -37,11 +37,13 @@ impl<const N: usize> Family<N> {
     #[inline(always)]
     fn distance<R: Real>(&self, p: Vec3<R>, a: Args<'_, R>) -> R {
         let exponent = a.get(1);
-        let mut products = [p.x; N];
+        let products = self.normals.map(
+            #[inline(always)]
+            |n| dot(p, n).abs(),
+        );
         let mut largest = p.x.lit(1e-30);
-        for k in 0..N {
-            products[k] = dot(p, self.normals[k]).abs();
-            largest = largest.max(products[k]);
+        for product in products {
+            largest = largest.max(product);
         }
         // Relative to the largest, so that no power overflows.
         let mut sum = p.x.lit(0.0);
