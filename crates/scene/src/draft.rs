@@ -7,7 +7,7 @@ use crate::light::{self, Light, Sky};
 use crate::limits::Limits;
 use crate::load::{Options, Parameter};
 use crate::material::Material;
-use crate::report::{Place, Source};
+use crate::report::{Place, Source, suggestion};
 use crate::scene::{Object, Scene};
 use crate::settings::{Settings, Shading, Shadow};
 use glam::{DVec3, Vec3};
@@ -54,15 +54,20 @@ impl Default for View {
 
 /// What a script has declared so far.
 pub(crate) struct Draft {
+    /// The scene's name, if it says one.
+    pub(crate) name: Option<String>,
     /// Texts of all files, for messages.
     pub(crate) sources: Vec<Source>,
     pub(crate) objects: Vec<Object>,
     pub(crate) materials: Vec<Material>,
     numbers: HashMap<String, u16>,
-    pub(crate) view: Option<(View, Place)>,
-    pub(crate) lights: Vec<Light>,
-    pub(crate) sky: Option<(Sky, Place)>,
-    pub(crate) settings: Option<(Settings, Place)>,
+    pub(crate) view: Option<View>,
+    /// Absent as long as nothing is said of lights.
+    pub(crate) lights: Option<Vec<Light>>,
+    pub(crate) sky: Option<Sky>,
+    pub(crate) settings: Option<Settings>,
+    /// Where that which may be stated once was stated.
+    pub(crate) stated: BTreeMap<&'static str, Place>,
     pub(crate) parameters: Vec<Parameter>,
     pub(crate) overrides: BTreeMap<String, String>,
     pub(crate) time: f64,
@@ -83,7 +88,9 @@ impl Draft {
             materials: Vec::new(),
             numbers: HashMap::new(),
             view: None,
-            lights: Vec::new(),
+            lights: None,
+            stated: BTreeMap::new(),
+            name: None,
             sky: None,
             settings: None,
             parameters: Vec::new(),
@@ -117,9 +124,26 @@ impl Draft {
         Some(number)
     }
 
+    /// That something is set from outside which the scene does not have, and what to do.
+    pub(crate) fn unknown_parameter(&self) -> Option<(String, String)> {
+        let names = || self.parameters.iter().map(|p| p.name.as_str());
+        let unknown = self
+            .overrides
+            .keys()
+            .find(|name| !names().any(|n| n == *name))?;
+        let help = suggestion(unknown, names()).unwrap_or_else(|| match self.parameters.len() {
+            0 => "slider(...), choice(...), toggle(...) and color(...) make parameters".to_string(),
+            _ => format!("there are {}", names().collect::<Vec<_>>().join(", ")),
+        });
+        Some((
+            format!("the scene has no parameter \"{unknown}\" to set"),
+            help,
+        ))
+    }
+
     /// The scene, with what the file left out.
-    pub(crate) fn finish(self, name: String, limits: &Limits) -> Result<Scene, String> {
-        let mut settings = self.settings.map_or_else(Settings::default, |s| s.0);
+    pub(crate) fn finish(self, name: &str, limits: &Limits) -> Result<Scene, String> {
+        let mut settings = self.settings.unwrap_or_default();
         if let Some(size) = self.size {
             settings.size = size;
         }
@@ -136,19 +160,14 @@ impl Draft {
             ));
         }
         let objects = self.objects;
-        let mut lights = self.lights;
-        if lights.is_empty() {
-            lights.push(key_light(settings.shading));
-        }
+        let lights = self
+            .lights
+            .unwrap_or_else(|| vec![key_light(settings.shading)]);
         let bounds = objects.iter().map(|o| o.field.facts().bounds);
-        let camera = framing::camera(
-            &self.view.map_or_else(View::default, |v| v.0),
-            bounds,
-            settings.size,
-        )?;
-        let sky = self.sky.map_or_else(Sky::default, |s| s.0);
+        let camera = framing::camera(&self.view.unwrap_or_default(), bounds, settings.size)?;
+        let sky = self.sky.unwrap_or_default();
         Ok(Scene {
-            name,
+            name: self.name.unwrap_or_else(|| name.to_string()),
             objects,
             materials: self.materials,
             lights,

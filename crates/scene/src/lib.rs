@@ -7,6 +7,7 @@ mod files;
 pub mod film;
 mod framing;
 mod images;
+pub mod json;
 pub mod language;
 pub mod light;
 pub mod limits;

@@ -25,7 +25,6 @@ pub enum Source {
 #[serde(deny_unknown_fields)]
 pub struct Light {
     /// Where it comes from.
-    #[serde(flatten)]
     pub source: Source,
     /// Linear colour times intensity.
     pub radiance: Vec3,

@@ -2,6 +2,7 @@
 
 use crate::draft::Draft;
 use crate::files::{Files, read_ordinary};
+use crate::json;
 use crate::language;
 use crate::language::mistake::{Mistake, Run, mistake};
 use crate::language::module::{Module, parse};
@@ -112,6 +113,8 @@ pub enum Setting {
 pub enum Language {
     /// Starlark, `.star`.
     Starlark,
+    /// Its twin in JSON, `.json`.
+    Json,
 }
 
 /// Stack of the thread that loads: the parser and the interpreter recurse as deep as the text nests, which is limited.
@@ -133,6 +136,7 @@ pub fn load(path: &Path, options: &Options) -> Result<Loaded, Failed> {
         .to_string();
     let language = match path.extension().and_then(|e| e.to_str()) {
         Some("star") => Language::Starlark,
+        Some("json") => Language::Json,
         _ => {
             return Err(fail(format!(
                 "{}: a scene file ends in .star or .json",
@@ -201,6 +205,7 @@ fn load_from(
     let (name, options) = (name.to_string(), options.clone());
     let work = move || match language {
         Language::Starlark => load_starlark(&name, text, root, &options),
+        Language::Json => load_json(&name, &text, root, &options),
     };
     let thread = std::thread::Builder::new()
         .name("scene".into())
@@ -232,26 +237,54 @@ fn load_starlark(
         names: BTreeMap::new(),
         limits: options.limits,
     };
-    let failed = |report: Report, files: Vec<PathBuf>| Failed {
-        report: report.into(),
-        files,
-    };
     if let Err(m) = loader.module(name, text) {
-        return Err(failed(
-            m.report(&loader.sources),
-            loader.files.into_loaded(),
-        ));
+        let report = m.report(&loader.sources).into();
+        let files = loader.files.into_loaded();
+        return Err(Failed { report, files });
     }
     let draft = Draft::new(options, loader.files, loader.sources);
-    let (mut draft, result) = language::run(&loader.modules, draft, &options.limits, start);
+    let (draft, result) = language::run(&loader.modules, draft, &options.limits, start);
+    let result = result.map_err(|m| m.report(&draft.sources).into());
+    finish(name, draft, result, &options.limits)
+}
+
+fn load_json(
+    name: &str,
+    text: &str,
+    root: Option<PathBuf>,
+    options: &Options,
+) -> Result<Loaded, Failed> {
+    let files = Files::new(root, options.limits.files.saturating_sub(1));
+    let source = Source {
+        name: name.to_string(),
+        text: Arc::from(text),
+    };
+    let mut draft = Draft::new(options, files, vec![source]);
+    let result =
+        json::read(&mut draft, &options.limits).and_then(|()| match draft.unknown_parameter() {
+            None => Ok(()),
+            Some((message, help)) => Err(Report::new(message).with_help(help).into()),
+        });
+    finish(name, draft, result, &options.limits)
+}
+
+/// The scene of a draft that was filled, or why it was not.
+fn finish(
+    name: &str,
+    mut draft: Draft,
+    result: Result<(), Box<Report>>,
+    limits: &Limits,
+) -> Result<Loaded, Failed> {
     let files = draft.files.loaded().to_vec();
-    if let Err(m) = result {
-        return Err(failed(m.report(&draft.sources), files));
-    }
     let parameters = std::mem::take(&mut draft.parameters);
     let (animated, log) = (draft.animated, std::mem::take(&mut draft.log));
     let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
-    match draft.finish(stem.to_string(), &options.limits) {
+    let scene = result.and_then(|()| {
+        draft
+            .finish(stem, limits)
+            .map_err(|m| Report::new(m).in_file(name).into())
+    });
+    match scene {
         Ok(scene) => Ok(Loaded {
             scene,
             parameters,
@@ -259,7 +292,7 @@ fn load_starlark(
             files,
             log,
         }),
-        Err(message) => Err(failed(Report::new(message).in_file(name), files)),
+        Err(report) => Err(Failed { report, files }),
     }
 }
 

@@ -1,6 +1,9 @@
 //! What a person is told when a scene cannot be loaded: where, what, and what to do.
 
-use miette::{Diagnostic, LabeledSpan, NamedSource, Severity, SourceCode};
+use miette::{
+    Diagnostic, LabeledSpan, MietteError, MietteSpanContents, Severity, SourceCode, SourceSpan,
+    SpanContents,
+};
 use std::fmt;
 use std::sync::Arc;
 
@@ -29,7 +32,7 @@ pub struct Place {
 pub struct Report {
     message: String,
     help: Option<String>,
-    source: Option<NamedSource<Arc<str>>>,
+    source: Option<Source>,
     name: String,
     label: Option<LabeledSpan>,
     /// Line and column of the place, 1-based; the column counts characters.
@@ -68,10 +71,11 @@ impl Report {
     pub fn at(mut self, source: &Source, place: Place) -> Report {
         let length = source.text.len();
         let start = floor_char(&source.text, (place.start as usize).min(length));
-        let end = floor_char(&source.text, (place.end as usize).clamp(start, length));
+        let end = (place.end as usize).clamp(start, length).min(start + LINE);
+        let end = floor_char(&source.text, end);
         self.position = Some(position(&source.text, start));
         self.label = Some(LabeledSpan::new(None, start, end - start));
-        self.source = Some(NamedSource::new(source.name.clone(), source.text.clone()));
+        self.source = Some(source.clone());
         self.name.clone_from(&source.name);
         self
     }
@@ -101,6 +105,55 @@ impl Report {
     /// Line and column, 1-based; the column counts characters.
     pub fn position(&self) -> Option<(usize, usize)> {
         self.position
+    }
+}
+
+/// Bytes of a line beyond which only the part around a place is shown.
+const LINE: usize = 160;
+
+impl SourceCode for Source {
+    fn read_span<'a>(
+        &'a self,
+        span: &SourceSpan,
+        before: usize,
+        after: usize,
+    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
+        let all = self.text.read_span(span, before, after)?;
+        let lines = all.data().split(|b| *b == b'\n');
+        let (line, column, count) = (all.line(), all.column(), all.line_count());
+        let (mut data, mut shown) = (all.data(), *all.span());
+        if lines.map(<[u8]>::len).any(|length| length > 2 * LINE) {
+            let around = |at: usize| floor_char(&self.text, at.min(self.text.len()));
+            let line_start = self.text[..around(span.offset())]
+                .rfind('\n')
+                .map_or(0, |i| i + 1);
+            let start = around(span.offset().saturating_sub(LINE / 2)).max(line_start);
+            let rest = &self.text[start..];
+            let line_end = start + rest.find('\n').unwrap_or(rest.len());
+            let end = around((span.offset() + span.len() + LINE / 2).min(line_end)).max(start);
+            (data, shown) = (
+                &self.text.as_bytes()[start..end],
+                (start, end - start).into(),
+            );
+            let (line, column) = position(&self.text, start);
+            let name = self.name.clone();
+            return Ok(Box::new(MietteSpanContents::new_named(
+                name,
+                data,
+                shown,
+                line - 1,
+                column - 1,
+                1,
+            )));
+        }
+        Ok(Box::new(MietteSpanContents::new_named(
+            self.name.clone(),
+            data,
+            shown,
+            line,
+            column,
+            count,
+        )))
     }
 }
 

@@ -26,9 +26,9 @@ impl<'a> Machine<'a> {
                 end: span.end().get(),
                 ..self.place(name.span)
             };
-            let (name, method) = self
-                .method(receiver, &name.node)
-                .map_err(|m| m.at(self.place(function.span)).at(place))?;
+            let named = self.place(name.span);
+            let method = self.method(receiver, &name.node);
+            let (name, method) = method.map_err(|m| m.at(named))?;
             let arguments = self.arguments(args)?;
             return self
                 .call_method(receiver, name, method, arguments, place)
@@ -115,6 +115,7 @@ impl<'a> Machine<'a> {
                 fields::primitive(&mut call, entry)
             }
             Value::Join(entry) => {
+                let arguments = self.gather_fields(arguments)?;
                 let params = std::iter::once("shapes")
                     .chain(entry.info.params.iter().map(|p| p.name))
                     .collect();
@@ -140,6 +141,35 @@ impl<'a> Machine<'a> {
                 )))
             }
         }
+    }
+
+    /// `union(a, b, c)` is `union([a, b, c])`.
+    fn gather_fields(&mut self, mut arguments: Vec<Argument<'a>>) -> Run<Vec<Argument<'a>>> {
+        let is_field = |a: &Argument<'a>| {
+            let field = |i| matches!(self.store.thing(i), Thing::Field(_));
+            a.name.is_none() && matches!(a.value, Value::Thing(i) if field(i))
+        };
+        let count = arguments.iter().take_while(|a| is_field(a)).count();
+        let Some(first) = arguments.first().filter(|_| count > 0) else {
+            return Ok(arguments);
+        };
+        let last = &arguments[count - 1];
+        let place = Place {
+            end: last.place.end,
+            ..first.place
+        };
+        self.grow_items(count)?;
+        let items = arguments.drain(..count).map(|a| a.value).collect();
+        let value = self.list(items)?;
+        arguments.insert(
+            0,
+            Argument {
+                name: None,
+                value,
+                place,
+            },
+        );
+        Ok(arguments)
     }
 
     fn call_native(

@@ -258,18 +258,11 @@ impl Call<'_, '_> {
     /// A direction: three numbers, or "x", "-y" and the like.
     pub(crate) fn direction(&self, param: &str, given: Given) -> Run<[f64; 3]> {
         if let Value::Text(i) = given.value {
-            return Ok(match &**self.machine.store.text(i) {
-                "x" | "+x" => [1.0, 0.0, 0.0],
-                "y" | "+y" => [0.0, 1.0, 0.0],
-                "z" | "+z" => [0.0, 0.0, 1.0],
-                "-x" => [-1.0, 0.0, 0.0],
-                "-y" => [0.0, -1.0, 0.0],
-                "-z" => [0.0, 0.0, -1.0],
-                other => {
-                    let message = format!("{} cannot be \"{other}\"", self.called(param));
-                    let help = "write \"x\", \"y\", \"z\", \"-x\", \"-y\", \"-z\" or three numbers such as (1, 2, 0)";
-                    return Err(mistake(message).help(help).at(given.place));
-                }
+            let word = self.machine.store.text(i);
+            return direction_of_word(word).ok_or_else(|| {
+                let message = format!("{} cannot be \"{word}\"", self.called(param));
+                let help = "write \"x\", \"y\", \"z\", \"-x\", \"-y\", \"-z\" or three numbers such as (1, 2, 0)";
+                mistake(message).help(help).at(given.place)
             });
         }
         if !matches!(given.value, Value::List(_) | Value::Tuple(_)) {
@@ -285,6 +278,18 @@ impl Call<'_, '_> {
         }
         Ok(v)
     }
+}
+
+/// The direction of "x", "-y" and the like.
+pub(crate) fn direction_of_word(word: &str) -> Option<[f64; 3]> {
+    let (sign, axis) = match word.strip_prefix('-') {
+        Some(axis) => (-1.0, axis),
+        None => (1.0, word.strip_prefix('+').unwrap_or(word)),
+    };
+    let k = ["x", "y", "z"].iter().position(|a| *a == axis)?;
+    let mut out = [0.0; 3];
+    out[k] = sign;
+    Some(out)
 }
 
 /// Whether a parameter is degrees in scene files and radians in the field.
@@ -325,11 +330,12 @@ pub(crate) fn join(call: &mut Call<'_, '_>, entry: &'static JoinEntry) -> Run<Va
     let given = call.need("shapes")?;
     let fields = call.machine.collect(given.value);
     let fields = fields.map_err(|_| call.unfit("shapes", "a list of fields", given))?;
-    let fields = fields
-        .into_iter()
-        .map(|value| call.field("shapes", Given { value, ..given }));
-    let fields = fields.collect::<Run<Vec<Field>>>()?;
-    value(call.machine, Field::join(entry, params, fields))
+    let mut shapes = Vec::with_capacity(fields.len());
+    for (i, value) in fields.into_iter().enumerate() {
+        let item = format!("{}. of the fields", i + 1);
+        shapes.push(call.field(&item, Given { value, ..given })?);
+    }
+    value(call.machine, Field::join(entry, params, shapes))
 }
 
 /// `a.smooth_union(b, radius)`.

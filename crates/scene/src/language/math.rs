@@ -127,14 +127,14 @@ pub(crate) const ALL: &[Native] = &[
         }
     ),
     function!(
-        "mix",
+        "lerp",
         "From a to b as t goes from 0 to 1: numbers, or tuples such as points and colours.",
         [
             slot("a", "", "A number or a tuple of numbers."),
             slot("b", "", "The same."),
             slot("t", "0.5", "Where between the two.")
         ],
-        mix
+        lerp
     ),
     function!(
         "length",
@@ -207,7 +207,7 @@ fn vector(c: &Call<'_, '_>, name: &str, given: Given) -> Run<Vec<f64>> {
         .collect()
 }
 
-fn mix(c: &mut Call<'_, '_>) -> Run<Value> {
+fn lerp(c: &mut Call<'_, '_>) -> Run<Value> {
     let (a, b) = (c.need("a")?, c.need("b")?);
     let t = c.number_or("t", 0.5, -f64::MAX, f64::MAX)?;
     let blend = |a: f64, b: f64| a + (b - a) * t;
@@ -219,7 +219,7 @@ fn mix(c: &mut Call<'_, '_>) -> Run<Value> {
     let b = vector(c, "b", b)?;
     if a.len() != b.len() {
         return Err(
-            mistake(format!("mix() of {} and {} numbers", a.len(), b.len())).at(from.place),
+            mistake(format!("lerp() of {} and {} numbers", a.len(), b.len())).at(from.place),
         );
     }
     c.machine.grow_items(a.len())?;

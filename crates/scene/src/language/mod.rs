@@ -37,9 +37,11 @@ mod stage;
 mod text;
 mod value;
 
+pub(crate) use fields::direction_of_word;
+pub(crate) use native::spoken;
+
 use crate::draft::Draft;
 use crate::limits::Limits;
-use crate::report::suggestion;
 use machine::Machine;
 use mistake::{Run, mistake};
 use module::Module;
@@ -105,17 +107,8 @@ pub(crate) fn run(
 
 /// Whether a script that ran to its end declared a scene.
 fn check(draft: &Draft) -> Run<()> {
-    let names: Vec<&str> = draft.parameters.iter().map(|p| p.name.as_str()).collect();
-    for name in draft.overrides.keys() {
-        if !names.contains(&name.as_str()) {
-            let m = mistake(format!("the scene has no parameter \"{name}\" to set"));
-            let none = || {
-                "slider(...), choice(...), toggle(...) and color(...) make parameters".to_string()
-            };
-            let help =
-                suggestion(name, names.iter().copied()).or_else(|| names.is_empty().then(none));
-            return Err(m.maybe_help(help));
-        }
+    if let Some((message, help)) = draft.unknown_parameter() {
+        return Err(mistake(message).help(help));
     }
     if draft.objects.is_empty() {
         return Err(mistake("the scene shows nothing").help("show(sphere()) puts a ball on stage"));

@@ -53,7 +53,8 @@ pub(crate) fn parse(file: u32, name: &str, text: &str, limits: &Limits) -> Run<A
             start: 0,
             end: 0,
         };
-        mistake(message).at(place.unwrap_or(whole))
+        let help = instead(&message).map(String::from);
+        mistake(message).maybe_help(help).at(place.unwrap_or(whole))
     })?;
     let builtins = super::builtins();
     Check::module(
@@ -63,6 +64,32 @@ pub(crate) fn parse(file: u32, name: &str, text: &str, limits: &Limits) -> Run<A
         builtins.keys().copied(),
     )?;
     Ok(ast)
+}
+
+/// What to write in place of a word that Python has and this language does not.
+fn instead(message: &str) -> Option<&'static str> {
+    const WORDS: &[(&str, &str)] = &[
+        (
+            "while",
+            "a `for` loop over range(n) ends by itself; `break` ends it earlier",
+        ),
+        ("import", "write load(\"parts.star\", \"name\")"),
+        ("from", "write load(\"parts.star\", \"name\")"),
+        ("class", "a function can give a field, a tuple or a dict"),
+        (
+            "try",
+            "mistakes end the script; test a condition with `if` before",
+        ),
+        ("raise", "write fail(\"message\")"),
+        ("assert", "write `if not ...: fail(\"message\")`"),
+        ("is", "write `==`"),
+        ("global", "give the value back with `return`"),
+    ];
+    let word = message
+        .split('`')
+        .nth(1)
+        .filter(|_| message.contains("reserved keyword"))?;
+    WORDS.iter().find(|w| w.0 == word).map(|w| w.1)
 }
 
 /// Refuses a text that would make the parser or the interpreter go too deep, before either sees it.

@@ -4,7 +4,6 @@ use super::mistake::{Run, mistake};
 use super::native::{Call, Native, Slot, slot};
 use super::value::{Thing, Value};
 use crate::draft::check_size;
-use crate::report::position;
 use crate::settings::{Antialias, Filter, March, Normals, Occlusion, Settings, Shading, Shadow};
 
 macro_rules! function {
@@ -328,15 +327,7 @@ fn samples(c: &Call<'_, '_>, name: &str, default: u32) -> Run<u32> {
 }
 
 fn render(c: &mut Call<'_, '_>) -> Run<Value> {
-    if let Some((_, first)) = &c.machine.draft.settings {
-        let source = &c.machine.draft.sources[first.file as usize];
-        let line = position(&source.text, first.start as usize).0;
-        let m = mistake(format!(
-            "render() was called already in {} at line {line}",
-            source.name
-        ));
-        return Err(m.help("leave one of the two out"));
-    }
+    c.once("how it is rendered")?;
     let d = Settings::default();
     let size = match c.get("size") {
         None => d.size,
@@ -416,6 +407,6 @@ fn render(c: &mut Call<'_, '_>) -> Run<Value> {
         seed: c.count_or("seed", d.seed, 0, u32::MAX)?,
         exposure: small(c, "exposure", f64::from(d.exposure), -20.0, 20.0)?,
     };
-    c.machine.draft.settings = Some((settings, c.place));
+    c.machine.draft.settings = Some(settings);
     Ok(Value::None)
 }

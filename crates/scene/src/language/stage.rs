@@ -169,18 +169,18 @@ impl Call<'_, '_> {
         Err(self.unfit(param, wanted, given))
     }
 
-    /// That something which a scene has once is stated twice.
-    fn twice(&self, what: &str, first: crate::report::Place) -> Box<super::mistake::Mistake> {
+    /// States something that a scene has once.
+    pub(crate) fn once(&mut self, what: &'static str) -> Run<()> {
+        let Some(first) = self.machine.draft.stated.insert(what, self.place) else {
+            return Ok(());
+        };
         let source = self.machine.draft.sources.get(first.file as usize);
         let whereabouts = source.map_or(String::new(), |s| {
-            format!(
-                " in {} at line {}",
-                s.name,
-                position(&s.text, first.start as usize).0
-            )
+            let (line, _) = position(&s.text, first.start as usize);
+            format!(" in {} at line {line}", s.name)
         });
-        mistake(format!("the scene has {what} already{whereabouts}"))
-            .help("leave one of the two out")
+        Err(mistake(format!("{what} is stated already{whereabouts}"))
+            .help("leave one of the two out"))
     }
 }
 
@@ -235,9 +235,7 @@ fn show(c: &mut Call<'_, '_>) -> Run<Value> {
 }
 
 fn camera(c: &mut Call<'_, '_>) -> Run<Value> {
-    if let Some((_, first)) = &c.machine.draft.view {
-        return Err(c.twice("a camera", *first));
-    }
+    c.once("the camera")?;
     let point = |name| c.get(name).map(|g| c.point(name, g)).transpose();
     let direction = |name| {
         c.get(name)
@@ -294,7 +292,7 @@ fn camera(c: &mut Call<'_, '_>) -> Run<Value> {
     if axes == Some(None) {
         return Err(mistake("`direction` of camera() points nowhere"));
     }
-    c.machine.draft.view = Some((view, c.place));
+    c.machine.draft.view = Some(view);
     Ok(Value::None)
 }
 
@@ -352,10 +350,11 @@ fn light(c: &mut Call<'_, '_>, source: Source) -> Run<Value> {
         }
     };
     let radiance = c.colour_or("color", "white")? * strength;
-    if c.machine.draft.lights.len() >= LIGHTS {
+    let lights = c.machine.draft.lights.get_or_insert_default();
+    if lights.len() >= LIGHTS {
         return Err(mistake(format!("more than {LIGHTS} lights")));
     }
-    c.machine.draft.lights.push(Light {
+    lights.push(Light {
         source,
         radiance,
         shadow,
@@ -364,9 +363,7 @@ fn light(c: &mut Call<'_, '_>, source: Source) -> Run<Value> {
 }
 
 fn sky(c: &mut Call<'_, '_>) -> Run<Value> {
-    if let Some((_, first)) = &c.machine.draft.sky {
-        return Err(c.twice("a sky", *first));
-    }
+    c.once("the sky")?;
     let default = Sky::default();
     let colour = |name| c.get(name).map(|g| c.colour(name, g)).transpose();
     let (one, top) = (colour("color")?, colour("top")?);
@@ -381,6 +378,6 @@ fn sky(c: &mut Call<'_, '_>) -> Run<Value> {
         bottom: colour("bottom")?.or(one).unwrap_or(default.bottom),
         ambient: c.number_or("ambient", f64::from(default.ambient), 0.0, 10.0)? as f32,
     };
-    c.machine.draft.sky = Some((sky, c.place));
+    c.machine.draft.sky = Some(sky);
     Ok(Value::None)
 }
