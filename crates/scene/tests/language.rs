@@ -75,7 +75,9 @@ fn numbers() {
         abs(-3), abs(-3.5), sign(-2.0) => 3 3.5 -1
         min(3, 1, 2), max([3, 1, 2]) => 1 3
         pow(2, 10), hypot(3, 4), sqrt(16) => 1024.0 5.0 4.0
-        sin(0), cos(pi), degrees(pi), radians(180) == pi => 0.0 -1.0 180.0 True
+        sin(90), cos(180), cos(90), sin(-90), cos(360) => 1.0 -1.0 0.0 -1.0 1.0
+        round(sin(30), 12), round(atan2(1, 1), 12), round(acos(0.5), 9), asin(1), atan(0) => 0.5 45.0 60.0 90.0 0.0
+        degrees(pi), radians(180) == pi => 180.0 True
         clamp(5, 0, 3), lerp(1, 3, 0.25) => 3.0 1.5
         lerp((0, 0), (2, 4)) => (1.0, 2.0)
         length((3, 4, 12)) => 13.0

@@ -1,4 +1,4 @@
-//! Mathematics. Angles are radians here, as in every textbook; parameters of shapes are degrees.
+//! Mathematics. Angles are degrees here too, as everywhere in scene files.
 
 use super::mistake::{Run, mistake};
 use super::native::{Call, Given, Native, Slot, slot};
@@ -22,29 +22,29 @@ pub(crate) const CONSTANTS: &[(&str, f64)] =
 
 /// The functions.
 pub(crate) const ALL: &[Native] = &[
-    function!("sin", "Sine of an angle in radians.", f64::sin),
-    function!("cos", "Cosine of an angle in radians.", f64::cos),
-    function!("tan", "Tangent of an angle in radians.", f64::tan),
+    function!("sin", "Sine of an angle in degrees.", sine),
+    function!("cos", "Cosine of an angle in degrees.", |x| sine(x + 90.0)),
+    function!("tan", "Tangent of an angle in degrees.", |x| x
+        .to_radians()
+        .tan()),
     function!(
         "asin",
-        "The angle in radians whose sine is x, from -1 to 1.",
-        f64::asin
+        "The angle in degrees whose sine is x, from -1 to 1.",
+        |x| x.asin().to_degrees()
     ),
     function!(
         "acos",
-        "The angle in radians whose cosine is x, from -1 to 1.",
-        f64::acos
+        "The angle in degrees whose cosine is x, from -1 to 1.",
+        |x| x.acos().to_degrees()
     ),
-    function!(
-        "atan",
-        "The angle in radians whose tangent is x.",
-        f64::atan
-    ),
+    function!("atan", "The angle in degrees whose tangent is x.", |x| x
+        .atan()
+        .to_degrees()),
     function!(
         "atan2",
-        "The angle in radians of the point (x, y).",
+        "The angle in degrees of the point (x, y).",
         [Y, X],
-        |c| two(c, ["y", "x"], f64::atan2)
+        |c| two(c, ["y", "x"], |y, x| y.atan2(x).to_degrees())
     ),
     function!("radians", "Radians of degrees.", f64::to_radians),
     function!("degrees", "Degrees of radians.", f64::to_degrees),
@@ -157,6 +157,18 @@ pub(crate) const ALL: &[Native] = &[
         run: random,
     },
 ];
+
+/// Sine of degrees, exact at multiples of 90.
+pub(crate) fn sine(degrees: f64) -> f64 {
+    let x = degrees % 360.0;
+    match x {
+        0.0 => x,
+        90.0 | -270.0 => 1.0,
+        180.0 | -180.0 => 0.0,
+        270.0 | -90.0 => -1.0,
+        _ => x.to_radians().sin(),
+    }
+}
 
 fn finite(c: &Call<'_, '_>, x: f64) -> Run<Value> {
     if x.is_nan() {
