@@ -127,6 +127,15 @@ pub fn create_atomically(
     put(path, Existing::Refuse, write)
 }
 
+/// Makes a folder, and those that hold it. One that exists is left as it is.
+///
+/// # Errors
+/// A file of that name, a folder that may not be written to.
+pub fn create_folder(path: &Path) -> Result<(), WriteError> {
+    fs::create_dir_all(path).map_err(WriteError::system(path))?;
+    sync_folder(path).map_err(WriteError::system(path))
+}
+
 /// Finds out whether a file could be written, before hours of work go into what it would hold. Also clears away what
 /// processes that were killed have left in its folder.
 ///

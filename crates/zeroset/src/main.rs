@@ -1,1 +1,105 @@
-fn main() {}
+//! The command line of Zeroset: the only place that exits the process.
+
+mod args;
+mod bench;
+mod command;
+mod console;
+mod failure;
+mod interrupt;
+mod json;
+mod reference;
+mod scene;
+mod values;
+
+use args::{Command, CommandLine};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{ColorChoice, CommandFactory, FromArgMatches};
+use console::{Colour, Console};
+use failure::{Exit, Failure};
+use std::ffi::OsString;
+use std::io::{self, Write};
+use std::path::Path;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let arguments: Vec<OsString> = std::env::args_os().collect();
+    let choice = match asked_colour(&arguments) {
+        Colour::Auto => ColorChoice::Auto,
+        Colour::Always => ColorChoice::Always,
+        Colour::Never => ColorChoice::Never,
+    };
+    let parsed = CommandLine::command()
+        .color(choice)
+        .try_get_matches_from(arguments);
+    let line = match parsed.and_then(|matches| CommandLine::from_arg_matches(&matches)) {
+        Ok(line) => line,
+        Err(error) => {
+            // help and version go to standard output and are no error
+            let _ = error.print();
+            if let Some(scene) = scene_as_command(&error) {
+                let _ = writeln!(io::stderr(), "\nTo render it: zeroset render {scene}");
+            }
+            return ExitCode::from(if error.use_stderr() {
+                Exit::Usage
+            } else {
+                Exit::Done
+            } as u8);
+        }
+    };
+    let console = Console::new(line.global.color, line.global.quiet, line.global.verbose);
+    interrupt::listen();
+    let exit = match run(&line.command, &console) {
+        Ok(()) => Exit::Done,
+        Err(failure) => {
+            if let Some(report) = &failure.report {
+                console.report(report.as_ref());
+            }
+            failure.exit
+        }
+    };
+    ExitCode::from(exit as u8)
+}
+
+fn run(command: &Command, console: &Console) -> Result<(), Failure> {
+    match command {
+        Command::Check(args) => command::check::run(args, console),
+        Command::Expand(args) => command::expand::run(args, console),
+        Command::Slice(args) => command::slice::run(args, console),
+        Command::Fields(args) => command::fields::run(args, console),
+        Command::Compare(args) => command::compare::run(args, console),
+        Command::Bench(args) => bench::run(args, console),
+        Command::Init(args) => command::init::run(args, console),
+        Command::Completions(args) => command::completions::completions(args, console),
+        Command::Man(args) => command::completions::man(args, console),
+    }
+}
+
+/// The scene that was named where a command belongs.
+fn scene_as_command(error: &clap::Error) -> Option<&str> {
+    let given = match error.get(ContextKind::InvalidSubcommand) {
+        Some(ContextValue::String(given)) if error.kind() == ErrorKind::InvalidSubcommand => given,
+        _ => return None,
+    };
+    let ending = Path::new(given).extension()?;
+    (ending == "star" || ending == "json").then_some(given)
+}
+
+/// `--color`, before the command line is read: its own messages want to know.
+fn asked_colour(arguments: &[OsString]) -> Colour {
+    let texts: Vec<&str> = arguments.iter().filter_map(|a| a.to_str()).collect();
+    let after = |i: usize| texts.get(i + 1).copied();
+    let asked =
+        texts
+            .iter()
+            .enumerate()
+            .find_map(|(i, text)| match text.strip_prefix("--color=") {
+                Some(when) => Some(when),
+                None if *text == "--color" => after(i),
+                None => None,
+            });
+    match asked {
+        Some("always") => Colour::Always,
+        Some("never") => Colour::Never,
+        _ => Colour::Auto,
+    }
+}

@@ -6,6 +6,7 @@
 
 mod legend;
 mod scale;
+pub mod section;
 mod text;
 
 use crate::picture::Picture;

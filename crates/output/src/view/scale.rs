@@ -33,16 +33,13 @@ impl Scale {
         }
     }
 
-    /// The decades that hold the positive numbers.
+    /// The decades that hold the positive numbers, but for the smallest of a hundred.
     pub(crate) fn decades(numbers: impl Iterator<Item = f32>) -> Scale {
-        let (min, max) = numbers
-            .filter(|x| x.is_finite() && *x > 0.0)
-            .fold((f32::INFINITY, 0.0f32), |(low, high), x| {
-                (low.min(x), high.max(x))
-            });
-        if max <= 0.0 {
+        let mut numbers: Vec<f32> = numbers.filter(|x| x.is_finite() && *x > 0.0).collect();
+        numbers.sort_unstable_by(f32::total_cmp);
+        let (Some(&min), Some(&max)) = (numbers.get(numbers.len() / 100), numbers.last()) else {
             return Scale::Decades(-6, 0);
-        }
+        };
         let high = max.log10().ceil() as i32;
         let low = (min.log10().floor() as i32).clamp(high - MAX_DECADES, high - 1);
         Scale::Decades(low, high)
@@ -58,19 +55,21 @@ impl Scale {
         if share > 0.0 { share.min(1.0) } else { 0.0 }
     }
 
+    /// The round number that `most` of lie on a linear scale at most.
+    pub(crate) fn step(self, most: usize) -> f32 {
+        match self {
+            Scale::Linear(low, high) => round_step(f64::from(high) - f64::from(low), most) as f32,
+            Scale::Decades(..) => 1.0,
+        }
+    }
+
     /// At most about `most` round numbers on the scale, ascending, as (place, text).
     pub(crate) fn ticks(self, most: usize) -> Vec<(f32, String)> {
         let most = most.max(2);
         match self {
             Scale::Linear(low, high) => {
                 let (low, high) = (f64::from(low), f64::from(high));
-                let rough = (high - low) / most as f64;
-                let power = 10f64.powf(rough.log10().floor());
-                let step = [1.0, 2.0, 5.0, 10.0]
-                    .map(|m| m * power)
-                    .into_iter()
-                    .find(|s| *s >= rough);
-                let step = step.unwrap_or(10.0 * power);
+                let step = round_step(high - low, most);
                 let decimals = (-step.log10().floor()).clamp(0.0, 9.0) as usize;
                 let (first, last) = (
                     (low / step - 1e-6).ceil() as i64,
@@ -97,6 +96,17 @@ impl Scale {
             }
         }
     }
+}
+
+/// The smallest of 1, 2 and 5 times a power of ten that fits into a width at most `most` times.
+fn round_step(width: f64, most: usize) -> f64 {
+    let rough = width / most as f64;
+    let power = 10f64.powf(rough.log10().floor());
+    [1.0, 2.0, 5.0]
+        .map(|m| m * power)
+        .into_iter()
+        .find(|s| *s >= rough)
+        .unwrap_or(10.0 * power)
 }
 
 #[cfg(test)]

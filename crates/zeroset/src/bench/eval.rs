@@ -10,7 +10,7 @@ use zeroset_field::program::Program;
 
 /// What `bench eval` measures. Times are the best of several runs, in nanoseconds a point.
 #[derive(Clone, Debug, Serialize)]
-pub struct Eval {
+pub(crate) struct Eval {
     /// SIMD level that was used.
     pub level: String,
     /// Instructions of the program.
@@ -29,12 +29,15 @@ const RUNS: usize = 9;
 const BATCHES: usize = 2000;
 
 /// Measures a program at points spread over the box `[-3, 3]^3`.
-pub fn eval(program: &Program) -> Eval {
+pub(crate) fn eval(program: &Program) -> Eval {
     let level = Level::new();
     let mut w = Workspace::new(program);
     let spread = |i: usize, step: f64| (6.0 * (i as f64 * step).fract() - 3.0) as f32;
     for i in 0..BATCH {
-        for (k, step) in [0.754_877_67, 0.569_840_29, 0.430_159_7].into_iter().enumerate() {
+        for (k, step) in [0.754_877_67, 0.569_840_29, 0.430_159_7]
+            .into_iter()
+            .enumerate()
+        {
             w.points_mut()[k].0[i] = spread(i, step);
         }
     }
@@ -60,13 +63,19 @@ pub fn eval(program: &Program) -> Eval {
         }));
     }
     Eval {
-        level: format!("{level:?}"),
+        level: name(level),
         instructions: program.structure().values.instructions.len(),
         ns_per_point: values,
         ns_per_gradient: gradients,
         ns_per_point_scalar: scalar,
         simd_over_scalar: scalar / values,
     }
+}
+
+/// Name of a SIMD level: the first word of how it is written for debugging.
+fn name(level: Level) -> String {
+    let written = format!("{level:?}");
+    written.split('(').next().unwrap_or_default().to_owned()
 }
 
 /// Nanoseconds a point of `batches` runs over a batch each.

@@ -1,0 +1,204 @@
+//! The command line: what can be asked, and in what words.
+
+use crate::console::Colour;
+use crate::failure::EXIT_CODES;
+use crate::values::{SectionPlane, Size, Window, assignment};
+use clap::{Args, Parser, Subcommand, ValueHint};
+use clap_complete::Shell;
+use std::path::PathBuf;
+
+/// Renders signed distance fields: from a scene of a few lines to a picture.
+#[derive(Debug, Parser)]
+#[command(
+    name = "zeroset",
+    version,
+    propagate_version = true,
+    arg_required_else_help = true
+)]
+#[command(subcommand_required = true, after_long_help = EXIT_CODES)]
+pub(crate) struct CommandLine {
+    #[command(flatten)]
+    pub global: Global,
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Global {
+    /// When to use colours
+    #[arg(
+        long,
+        global = true,
+        value_name = "WHEN",
+        value_enum,
+        default_value_t,
+        help_heading = "Messages"
+    )]
+    pub color: Colour,
+    /// Say only what went wrong
+    #[arg(
+        short,
+        long,
+        global = true,
+        conflicts_with = "verbose",
+        help_heading = "Messages"
+    )]
+    pub quiet: bool,
+    /// Say what is being done; twice for more
+    #[arg(short, long, global = true, action = clap::ArgAction::Count, help_heading = "Messages")]
+    pub verbose: u8,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Check a scene: its objects, their bounds, what is proven about their distances
+    Check(Check),
+    /// Print a scene as JSON, which every command takes in place of a script
+    Expand(Expand),
+    /// List what the scene language offers, or explain one name
+    Fields(Fields),
+    /// Draw a section through a scene's distance field, with lines of equal distance
+    Slice(Slice),
+    /// Say how different two pictures are: RMSE, PSNR, SSIM and FLIP
+    Compare(Compare),
+    /// Measure how fast this machine is
+    Bench(Bench),
+    /// Make a folder with a first scene to play with
+    Init(Init),
+    /// Print completions for a shell
+    Completions(Completions),
+    /// Print a manual page
+    Man(Man),
+}
+
+/// A scene and what changes it.
+#[derive(Debug, Args)]
+pub(crate) struct SceneArgs {
+    /// The scene: a script (.star) or JSON (.json)
+    #[arg(value_name = "SCENE", value_hint = ValueHint::FilePath)]
+    pub scene: PathBuf,
+    /// Set a parameter of the scene (slider, choice, toggle or color); can be given many times
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment, help_heading = "Scene")]
+    pub set: Vec<(String, String)>,
+    /// What time() is in the scene, seconds
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value_t = 0.0,
+        allow_negative_numbers = true,
+        value_parser = crate::values::seconds,
+        help_heading = "Scene"
+    )]
+    pub time: f64,
+    /// Change a limit on what a scene may cost; can be given many times. `zeroset fields limits` lists them
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment, help_heading = "Scene")]
+    pub limit: Vec<(String, String)>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Check {
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Print as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Expand {
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Write to a file instead of standard output
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Fields {
+    /// The name to explain. Default: list all names
+    #[arg(value_name = "NAME")]
+    pub name: Option<String>,
+    /// Print as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Slice {
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// The plane of the section, for example z=0 or y=-0.5
+    #[arg(long, value_name = "AXIS=WHERE", default_value = "z=0")]
+    pub plane: SectionPlane,
+    /// The picture: .png. Default: the scene's name with -slice, in this folder
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
+    /// Size in pixels
+    #[arg(long, value_name = "WxH", default_value = "512x512")]
+    pub size: Size,
+    /// What is seen of the plane, scene units: left, bottom, right, top. Default: the scene's bounds and some air
+    #[arg(long, value_name = "U0,V0,U1,V1", allow_hyphen_values = true)]
+    pub window: Option<Window>,
+    /// Leave out the strip that explains the colours
+    #[arg(long)]
+    pub no_legend: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Compare {
+    /// The reference: PNG or OpenEXR
+    #[arg(value_name = "A", value_hint = ValueHint::FilePath)]
+    pub reference: PathBuf,
+    /// What is compared with it
+    #[arg(value_name = "B", value_hint = ValueHint::FilePath)]
+    pub test: PathBuf,
+    /// Print as JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Write the differences that are seen (FLIP) as a picture
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Bench {
+    #[command(subcommand)]
+    pub measure: Measure,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Measure {
+    /// Evaluate a scene's field in SIMD batches, and one point at a time
+    Eval(Measured),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Measured {
+    /// The scene. Default: three joined solids over a floor
+    #[arg(value_name = "SCENE", value_hint = ValueHint::FilePath)]
+    pub scene: Option<PathBuf>,
+    /// Print as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Init {
+    /// The folder; it is made if there is none. Nothing in it is replaced
+    #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub folder: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Completions {
+    /// The shell
+    #[arg(value_name = "SHELL")]
+    pub shell: Shell,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Man {
+    /// The command to explain. Default: zeroset itself
+    #[arg(value_name = "COMMAND")]
+    pub command: Option<String>,
+}

@@ -1,0 +1,258 @@
+//! `zeroset check`.
+
+use crate::args::Check;
+use crate::console::Console;
+use crate::failure::{Exit, Failure};
+use crate::json;
+use crate::reference::shortest;
+use serde::Serialize;
+use std::collections::{BTreeSet, HashSet};
+use std::fmt::Write;
+use zeroset_field::bounds::{Aabb, Exactness};
+use zeroset_field::field::{Field, Node};
+use zeroset_field::program::{Limits, Program};
+use zeroset_scene::load::{Control, Loaded, Setting};
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Findings {
+    scene: String,
+    files: Vec<String>,
+    /// Whether the scene uses time().
+    animated: bool,
+    width: u32,
+    height: u32,
+    lights: usize,
+    materials: usize,
+    parameters: Vec<ParameterFinding>,
+    objects: Vec<ObjectFinding>,
+    /// Steps of an evaluation of the whole scene; none without objects.
+    instructions: Option<usize>,
+    /// Whether every distance is proven never to be too large.
+    proven: bool,
+}
+
+#[derive(Serialize)]
+struct ParameterFinding {
+    name: String,
+    allowed: String,
+    value: String,
+    default: String,
+}
+
+#[derive(Serialize)]
+struct ObjectFinding {
+    name: String,
+    /// File, line and column.
+    place: Option<(String, u32, u32)>,
+    distance: &'static str,
+    /// Lipschitz constant of the formula, which its value is divided by.
+    lipschitz: f64,
+    /// Smallest and largest corner; null along an unbounded side.
+    bounds: [[Option<f64>; 3]; 2],
+    nodes: u64,
+    /// What its distance rests on without a proof.
+    unproven: Vec<String>,
+}
+
+/// Checks a scene, and says what is known about it.
+pub(crate) fn run(args: &Check, console: &Console) -> Result<(), Failure> {
+    let options = crate::scene::options(&args.scene, None)?;
+    let loaded = crate::scene::loaded(&args.scene, &options, console)?;
+    let invalid = |error: String| Failure::new(Exit::Scene, error);
+    let field = loaded
+        .scene
+        .field()
+        .map_err(|error| invalid(error.to_string()))?;
+    let program = field.map(|field| Program::compile(&field, &Limits::default()));
+    let program = program
+        .transpose()
+        .map_err(|error| invalid(error.to_string()))?;
+    let findings = findings(&loaded, program.as_ref());
+    console.print(&if args.json {
+        json::pretty(&findings)?
+    } else {
+        words(&findings)
+    })
+}
+
+fn findings(loaded: &Loaded, program: Option<&Program>) -> Findings {
+    let scene = &loaded.scene;
+    let objects: Vec<ObjectFinding> = (scene.objects.iter())
+        .map(|object| {
+            let facts = object.field.facts();
+            ObjectFinding {
+                name: object.name.clone(),
+                place: object.place.clone(),
+                distance: match facts.exactness {
+                    Exactness::Exact => "exact",
+                    Exactness::Outside => "exact outside",
+                    Exactness::Bound => "bound",
+                    Exactness::Estimate => "estimate",
+                },
+                lipschitz: facts.slope,
+                bounds: corners(&facts.bounds),
+                nodes: facts.nodes,
+                unproven: unproven(&object.field),
+            }
+        })
+        .collect();
+    let parameters = loaded.parameters.iter().map(|p| ParameterFinding {
+        name: p.name.clone(),
+        allowed: match &p.control {
+            Control::Slider { min, max } => format!("{} to {}", shortest(*min), shortest(*max)),
+            Control::Choice { options } => options.join(", "),
+            Control::Toggle => "true, false".to_owned(),
+            Control::Colour => "a colour".to_owned(),
+        },
+        value: setting(&p.value),
+        default: setting(&p.default),
+    });
+    Findings {
+        scene: scene.name.clone(),
+        files: loaded
+            .files
+            .iter()
+            .map(|f| f.to_string_lossy().into_owned())
+            .collect(),
+        animated: loaded.animated,
+        width: scene.settings.size[0],
+        height: scene.settings.size[1],
+        lights: scene.lights.len(),
+        materials: scene.materials.len(),
+        parameters: parameters.collect(),
+        proven: objects.iter().all(|o| o.unproven.is_empty()),
+        objects,
+        instructions: program.map(|p| p.structure().values.instructions.len()),
+    }
+}
+
+fn setting(setting: &Setting) -> String {
+    match setting {
+        Setting::Number(x) => shortest(*x),
+        Setting::Text(text) => text.clone(),
+        Setting::Flag(flag) => flag.to_string(),
+        Setting::Colour(rgb) => {
+            let [r, g, b] = rgb.map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8);
+            format!("#{r:02x}{g:02x}{b:02x}")
+        }
+    }
+}
+
+fn corners(bounds: &Aabb) -> [[Option<f64>; 3]; 2] {
+    [bounds.min, bounds.max].map(|corner| corner.map(|x| x.is_finite().then_some(x)))
+}
+
+/// What in a tree has no proof, each kind once. Shared parts are looked at once.
+fn unproven(field: &Field) -> Vec<String> {
+    let (mut seen, mut found, mut open) = (HashSet::new(), BTreeSet::new(), vec![field]);
+    while let Some(field) = open.pop() {
+        if field.facts().exactness != Exactness::Estimate || !seen.insert(field.key()) {
+            continue;
+        }
+        open.extend(field.children());
+        match field.node() {
+            Node::Primitive { entry, .. } => {
+                found.insert(format!("{}: a distance estimator", entry.info.name))
+            }
+            Node::Formula(_) => found.insert("a formula whose slope is stated by hand".to_owned()),
+            // what is above an estimate is one too; an operation that makes an estimate of a proven field is named
+            Node::Map { entry, shape, .. } if is_proven(shape) => {
+                found.insert(entry.info.name.to_owned())
+            }
+            Node::Modify { entry, shape, .. } if is_proven(shape) => {
+                found.insert(entry.info.name.to_owned())
+            }
+            Node::Join { entry, shapes, .. } if shapes.iter().all(is_proven) => {
+                found.insert(entry.info.name.to_owned())
+            }
+            _ => false,
+        };
+    }
+    found.into_iter().collect()
+}
+
+fn is_proven(field: &Field) -> bool {
+    field.facts().exactness != Exactness::Estimate
+}
+
+/// For a person.
+fn words(findings: &Findings) -> String {
+    let mut out = String::new();
+    let _ = writeln!(
+        out,
+        "{}: {} object{}, {} light{}, {} x {} pixels{}",
+        findings.scene,
+        findings.objects.len(),
+        plural(findings.objects.len()),
+        findings.lights,
+        plural(findings.lights),
+        findings.width,
+        findings.height,
+        if findings.animated { ", animated" } else { "" },
+    );
+    for p in &findings.parameters {
+        let changed = if p.value == p.default {
+            String::new()
+        } else {
+            format!(", default {}", p.default)
+        };
+        let _ = writeln!(out, "  {} = {} ({}{changed})", p.name, p.value, p.allowed);
+    }
+    if !findings.objects.is_empty() {
+        let name = findings
+            .objects
+            .iter()
+            .map(|o| o.name.chars().count())
+            .max()
+            .unwrap_or(0)
+            .clamp(6, 24);
+        let _ = writeln!(
+            out,
+            "\n{:name$}  {:13}  {:9}  {:>6}  bounds",
+            "object", "distance", "Lipschitz", "nodes"
+        );
+        for o in &findings.objects {
+            let short: String = o.name.chars().take(24).collect();
+            let lipschitz = shortest((o.lipschitz * 1e4).round() / 1e4);
+            let bounds = spoken(&o.bounds);
+            let _ = writeln!(
+                out,
+                "{short:name$}  {:13}  {lipschitz:9}  {:>6}  {bounds}",
+                o.distance, o.nodes
+            );
+        }
+    }
+    out.push('\n');
+    if findings.proven {
+        out.push_str("Proven: no distance is ever too large, so that no ray passes a surface.\n");
+    }
+    for o in findings.objects.iter().filter(|o| !o.unproven.is_empty()) {
+        let _ = writeln!(
+            out,
+            "Unproven: {} rests on {}",
+            o.name,
+            o.unproven.join(", ")
+        );
+    }
+    if let Some(instructions) = findings.instructions {
+        let _ = writeln!(
+            out,
+            "An evaluation takes {instructions} instruction{}.",
+            plural(instructions)
+        );
+    }
+    out
+}
+
+fn spoken([min, max]: &[[Option<f64>; 3]; 2]) -> String {
+    let number = |x: Option<f64>, none: &str| {
+        x.map_or(none.to_owned(), |x| shortest((x * 1e3).round() / 1e3))
+    };
+    let corner = |corner: &[Option<f64>; 3], none| corner.map(|x| number(x, none)).join(", ");
+    format!("({}) to ({})", corner(min, "-inf"), corner(max, "inf"))
+}
+
+fn plural(count: usize) -> &'static str {
+    if count == 1 { "" } else { "s" }
+}

@@ -1,0 +1,24 @@
+//! `zeroset expand`.
+
+use crate::args::Expand;
+use crate::console::Console;
+use crate::failure::Failure;
+use std::io::Write;
+use zeroset_output::atomic::{probe, write_atomically};
+use zeroset_scene::json::{expand, to_text};
+
+/// Prints a scene as JSON.
+pub(crate) fn run(args: &Expand, console: &Console) -> Result<(), Failure> {
+    if let Some(path) = &args.output {
+        probe(path)?;
+    }
+    let options = crate::scene::options(&args.scene, None)?;
+    let loaded = crate::scene::loaded(&args.scene, &options, console)?;
+    let text = to_text(&expand(&loaded.scene));
+    match &args.output {
+        None => console.print(&text),
+        Some(path) => Ok(write_atomically(path, |writer| {
+            writer.write_all(text.as_bytes())
+        })?),
+    }
+}

@@ -1,0 +1,62 @@
+//! `zeroset fields`.
+
+use crate::args::Fields;
+use crate::console::Console;
+use crate::failure::{Exit, Failure};
+use crate::json;
+use crate::reference::{Entry, entries, limits, page, signature};
+use std::fmt::Write;
+
+/// Lists what there is, or explains one name.
+pub(crate) fn run(args: &Fields, console: &Console) -> Result<(), Failure> {
+    let entries = entries();
+    let Some(name) = &args.name else {
+        return console.print(&if args.json {
+            json::pretty(&entries)?
+        } else {
+            listing(&entries)
+        });
+    };
+    if name == "limits" && !args.json {
+        return console.print(&limits());
+    }
+    let Some(entry) = entries.iter().find(|e| e.name == name) else {
+        let help = match zeroset_scene::report::nearest(name, entries.iter().map(|e| e.name)) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => "`zeroset fields` lists all names".to_owned(),
+        };
+        return Err(Failure::with_help(
+            Exit::Usage,
+            format!("the scene language has no `{name}`"),
+            help,
+        ));
+    };
+    console.print(&if args.json {
+        json::pretty(entry)?
+    } else {
+        page(entry)
+    })
+}
+
+/// All entries by group: how each is called, and what it is.
+fn listing(entries: &[Entry]) -> String {
+    let mut groups: Vec<&str> = Vec::new();
+    for entry in entries {
+        if !groups.contains(&entry.group) {
+            groups.push(entry.group);
+        }
+    }
+    let mut out = String::new();
+    for group in groups {
+        let _ = writeln!(out, "{}{group}", if out.is_empty() { "" } else { "\n" });
+        for entry in entries.iter().filter(|e| e.group == group) {
+            let dot = if matches!(entry.kind, "map" | "modifier" | "method") {
+                "."
+            } else {
+                ""
+            };
+            let _ = writeln!(out, "  {dot}{}\n      {}", signature(entry), entry.doc);
+        }
+    }
+    out
+}

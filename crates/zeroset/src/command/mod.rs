@@ -1,0 +1,9 @@
+//! The commands.
+
+pub(crate) mod check;
+pub(crate) mod compare;
+pub(crate) mod completions;
+pub(crate) mod expand;
+pub(crate) mod fields;
+pub(crate) mod init;
+pub(crate) mod slice;

@@ -1,0 +1,109 @@
+//! What ends a command early, and the exit code it ends with.
+
+use miette::{Diagnostic, MietteDiagnostic};
+use zeroset_output::atomic::WriteError;
+use zeroset_output::format::read::ReadError;
+use zeroset_scene::render::RenderError;
+
+/// Exit codes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub(crate) enum Exit {
+    /// Everything was done.
+    Done = 0,
+    /// The job itself failed.
+    Job = 1,
+    /// The command line is wrong.
+    Usage = 2,
+    /// The scene is wrong.
+    Scene = 3,
+    /// A file could not be read or written.
+    File = 4,
+    /// Ctrl-C, or asked to end by the system.
+    Interrupted = 130,
+}
+
+/// What `--help` says about exit codes.
+pub(crate) const EXIT_CODES: &str = "\
+Exit codes:
+    0  everything was done
+    1  the job failed (it could not be rendered, the pictures cannot be compared)
+    2  the command line is wrong
+    3  the scene is wrong: the message names file, line and column
+    4  a file could not be read or written; a file that existed is whole
+  130  interrupted: a file that existed is whole
+
+Results go to files or to standard output; progress, notes and errors go to standard error.";
+
+/// Why a command ends early.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    /// How the process exits.
+    pub exit: Exit,
+    /// What is said about it, if anything.
+    pub report: Option<Box<dyn Diagnostic + Send + Sync>>,
+}
+
+impl Failure {
+    /// A failure with a message.
+    pub(crate) fn new(exit: Exit, message: impl Into<String>) -> Failure {
+        Failure {
+            exit,
+            report: Some(Box::new(MietteDiagnostic::new(message))),
+        }
+    }
+
+    /// A failure with a message and what to do about it.
+    pub(crate) fn with_help(
+        exit: Exit,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Failure {
+        Failure {
+            exit,
+            report: Some(Box::new(MietteDiagnostic::new(message).with_help(help))),
+        }
+    }
+
+    /// An end that needs no words.
+    pub(crate) fn silent(exit: Exit) -> Failure {
+        Failure { exit, report: None }
+    }
+}
+
+impl From<WriteError> for Failure {
+    fn from(error: WriteError) -> Self {
+        Failure::with_help(Exit::File, error.to_string(), error.advice())
+    }
+}
+
+impl From<ReadError> for Failure {
+    fn from(error: ReadError) -> Self {
+        Failure::new(Exit::File, error.to_string())
+    }
+}
+
+impl From<zeroset_scene::load::Failed> for Failure {
+    fn from(failed: zeroset_scene::load::Failed) -> Self {
+        Failure {
+            exit: Exit::Scene,
+            report: Some(failed.report),
+        }
+    }
+}
+
+impl From<RenderError> for Failure {
+    fn from(error: RenderError) -> Self {
+        match error {
+            RenderError::Cancelled => Failure::silent(Exit::Interrupted),
+            RenderError::Field(_) | RenderError::Compile(_) => {
+                Failure::new(Exit::Scene, error.to_string())
+            }
+            RenderError::Threads { .. } => Failure::with_help(
+                Exit::Job,
+                error.to_string(),
+                "ask for fewer threads with --threads",
+            ),
+        }
+    }
+}
