@@ -31,6 +31,7 @@ fn prove(e: &Entry) -> Result<(), Failure> {
         geometry::bounds(&case)?;
         numbers::single(&case)?;
         numbers::interval(&case)?;
+        numbers::any_size(&case)?;
     }
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! Proofs that every number type computes the same formula.
 
 use zeroset_field::catalogue::Roughness;
+use zeroset_field::catalogue::{Kind, Unit};
 use zeroset_field::number::Interval;
 
 use crate::case::{Case, Failure, along, length};
@@ -83,7 +84,8 @@ pub fn interval(case: &Case<'_>) -> Result<(), Failure> {
             useful += u32::from(range.hi - range.lo <= USEFUL.1 * case.lipschitz * half);
         }
     }
-    if case.entry.roughness == Roughness::Smooth && f64::from(useful) < USEFUL.0 * f64::from(small) {
+    if case.entry.roughness == Roughness::Smooth && f64::from(useful) < USEFUL.0 * f64::from(small)
+    {
         return Err(case.fail(
             "interval",
             format!("only {useful} of {small} ranges over small boxes are useful"),
@@ -144,6 +146,56 @@ pub fn gradient(case: &Case<'_>) -> Result<(), Failure> {
             "gradient",
             format!("smooth at only {smooth} of {} places", places.len()),
         ));
+    }
+    Ok(())
+}
+
+/// A shape of a thousand times the size, or a thousandth, is the same shape: no tolerance hidden in a formula is absolute.
+/// (For entries whose size is set by lengths: that of a fractal is set by its iteration.)
+pub fn any_size(case: &Case<'_>) -> Result<(), Failure> {
+    let params = case.entry.info.params;
+    let scales =
+        case.entry.info.group != "Fractals" && params.iter().any(|p| p.unit == Unit::Length);
+    if !scales || params.iter().any(|p| p.unit == Unit::Rate) {
+        return Ok(());
+    }
+    // Powers of two, so that nothing is rounded.
+    for factor in [1024.0, 1.0 / 1024.0] {
+        let mut stored = case.stored.clone();
+        let mut at = 0;
+        for p in params {
+            if let Kind::List(_) = p.kind {
+                at += 1;
+            }
+            let len = if let Kind::List(_) = p.kind {
+                stored.len() - at
+            } else {
+                p.kind.len()
+            };
+            if p.unit == Unit::Length {
+                stored[at..at + len]
+                    .iter_mut()
+                    .for_each(|x| *x *= factor as f32);
+            }
+            at += len;
+        }
+        for p in case.places(150, 14) {
+            let q = p.map(|x| x * factor);
+            let (plain, scaled) = (case.value(p), (case.entry.value)(q, &stored) / factor);
+            let near =
+                |error: f64, value: f64| (value - plain).abs() <= error * (case.size + length(p));
+            if !near(1e-9, scaled) {
+                let what = format!("times {factor} it is {scaled} at {p:?}, not {plain}");
+                return Err(case.fail("any size", what));
+            }
+            let single = (case.entry.single)(q.map(|x| x as f32), &stored);
+            if !near(SINGLE, f64::from(single.0) / factor)
+                || single.1.iter().any(|g| !g.is_finite())
+            {
+                let what = format!("times {factor} it is {single:?} in f32 at {p:?}, not {plain}");
+                return Err(case.fail("any size", what));
+            }
+        }
     }
     Ok(())
 }

@@ -257,7 +257,9 @@ fn to_parabola<R: Real>(p: Vec3<R>, a: Args<'_, R>) -> R {
     let u = control - start;
     let v = end - control - u;
     let q = p - start;
-    let (vv, uv, uu) = (v.length_squared().max(1e-12), u.dot(v), u.length_squared());
+    let (uv, uu) = (u.dot(v), u.length_squared());
+    // A straight line has no cubic term: one that does no harm keeps the divisions by it finite.
+    let vv = v.length_squared().max(uu * 1e-12).max(1e-30);
     let (g1, g0) = (-(q.dot(v) - uu * 2.0), -q.dot(u));
     let half = ((-(g1 * (vv / 3.0)) + uv * uv).max(0.0)).sqrt() / vv;
     let middle = -(uv / vv);
