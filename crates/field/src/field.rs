@@ -7,6 +7,7 @@ use crate::bounds::{Aabb, Exactness};
 use crate::catalogue::entries::{JoinEntry, MapEntry, ModifyEntry, PrimitiveEntry};
 use crate::catalogue::{Dimension, Info, Kind, Stretch};
 use crate::formula::Formula;
+use crate::level::join_bounds;
 use crate::placement::Placement;
 use crate::repetition::{Polar, Repetition};
 use std::sync::Arc;
@@ -256,7 +257,7 @@ impl Field {
         let dimension = through(&entry.info, child.dimension)?;
         let slope = (entry.lipschitz)(&params, child.slope);
         let facts = Facts {
-            bounds: (entry.bounds)(&params, &child.bounds),
+            bounds: (entry.level_bounds)(&params, 0.0, &|level| self.level_bounds(level)),
             exactness: (entry.exactness)(child.exactness),
             slope,
             steep: child.steep
@@ -295,8 +296,7 @@ impl Field {
             return Ok(first.clone());
         }
         let mut facts = first.facts().above()?;
-        let boxes: Vec<Aabb> = shapes.iter().map(|s| s.facts().bounds).collect();
-        let bounds = (entry.bounds)(&params, &boxes);
+        let bounds = join_bounds(entry, &params, &shapes, 0.0, &Field::level_bounds);
         for shape in rest {
             let f = shape.facts();
             if facts.dimension != f.dimension

@@ -6,6 +6,7 @@ mod compile;
 pub mod eval;
 pub mod field;
 pub mod formula;
+mod level;
 pub mod number;
 pub mod op;
 pub mod placement;

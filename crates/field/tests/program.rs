@@ -454,3 +454,40 @@ fn copies_of_bounds_do_not_jump() {
         }
     }
 }
+
+#[test]
+fn boxes_hold_what_grows_from_bounds() {
+    let all = catalogue();
+    let map = |field: &Field, name: &str, params: &[f64]| {
+        field.map(all.map(name).unwrap(), params.to_vec()).unwrap()
+    };
+    let grow = |field: &Field, by: f64| {
+        let round = all.modifier("round").unwrap();
+        field.modify(round, vec![by]).unwrap()
+    };
+    let stretched = map(&primitive("sphere", &[1.0]), "stretch", &[3.0, 1.0, 1.0]);
+    let twisted = map(&primitive("box", &[1.0, 2.0, 0.4]), "twist", &[1.0]);
+    let both = join(
+        "smooth_union",
+        &[0.8],
+        &[stretched.clone(), twisted.clone(), stretched.clone()],
+    );
+    let mut r = Random(0x5eed_0006);
+    for field in [
+        grow(&stretched, 0.5),
+        grow(&twisted, 0.3),
+        both.clone(),
+        grow(&both, 0.4),
+    ] {
+        let program = compiled(&field);
+        let bounds = program.bounds().grow(1e-6);
+        for _ in 0..20_000 {
+            let p = r.point(6.0);
+            assert!(
+                value(&program, p) > 0.0 || bounds.contains(p),
+                "{p:?} is not in {bounds:?}"
+            );
+        }
+    }
+    assert!(grow(&stretched, 0.5).facts().bounds.max[0] < 4.6);
+}

@@ -16,6 +16,8 @@ pub struct PrimitiveEntry {
     pub code: u16,
     /// See [`Primitive::bounds`].
     pub bounds: fn(&[f64]) -> Aabb,
+    /// See [`Primitive::level_bounds`].
+    pub level_bounds: fn(&[f64], f64) -> Aabb,
     /// See [`Primitive::lipschitz`].
     pub lipschitz: fn(&[f64]) -> f64,
     /// See [`Primitive::contains`].
@@ -45,6 +47,11 @@ pub struct MapEntry {
     pub check: fn(&[f64]) -> Result<(), String>,
 }
 
+/// A box of a level set, from the parameters, the level, and boxes of the level sets of what is changed.
+pub type ModifyBounds = fn(&[f64], f64, &dyn Fn(f64) -> Aabb) -> Aabb;
+/// A box of a level set, from the parameters, the level, and boxes of the level sets of what is joined.
+pub type JoinBounds = fn(&[f64], f64, &dyn Fn(f64) -> Aabb, &dyn Fn(f64) -> Aabb) -> Aabb;
+
 /// A modifier of the catalogue.
 #[derive(Debug)]
 pub struct ModifyEntry {
@@ -56,8 +63,8 @@ pub struct ModifyEntry {
     pub code: u16,
     /// See [`Modify::lipschitz`].
     pub lipschitz: fn(&[f64], f64) -> f64,
-    /// See [`Modify::bounds`].
-    pub bounds: fn(&[f64], &Aabb) -> Aabb,
+    /// See [`Modify::level_bounds`].
+    pub level_bounds: ModifyBounds,
     /// See [`Modify::exactness`].
     pub exactness: fn(Exactness) -> Exactness,
     /// See [`Modify::check`].
@@ -79,6 +86,8 @@ pub struct JoinEntry {
     pub lipschitz: fn(&[f64], f64, f64) -> f64,
     /// See [`Join::fold_bounds`].
     pub bounds: fn(&[f64], &[Aabb]) -> Aabb,
+    /// See [`Join::level_bounds`].
+    pub level_bounds: JoinBounds,
     /// See [`Join::exactness`].
     pub exactness: fn(Exactness, Exactness) -> Exactness,
     /// See [`Join::reach`].
@@ -175,6 +184,7 @@ fn primitive<E: Primitive>() -> PrimitiveEntry {
         samples: E::SAMPLES,
         code: 0,
         bounds: E::bounds,
+        level_bounds: E::level_bounds,
         lipschitz: E::lipschitz,
         contains: E::contains,
         check: E::check,
@@ -200,7 +210,7 @@ fn modifier<E: Modify>() -> ModifyEntry {
         samples: E::SAMPLES,
         code: 0,
         lipschitz: E::lipschitz,
-        bounds: E::bounds,
+        level_bounds: E::level_bounds,
         exactness: E::exactness,
         check: E::check,
     }
@@ -214,6 +224,7 @@ fn join<E: Join>() -> JoinEntry {
         code: 0,
         lipschitz: E::lipschitz,
         bounds: E::fold_bounds,
+        level_bounds: E::level_bounds,
         exactness: E::exactness,
         reach: E::reach,
         contains: E::contains,

@@ -178,6 +178,11 @@ pub trait Primitive: 'static {
     fn distance<R: Real>(p: Vec3<R>, a: Args<'_, R>) -> R;
     /// A box that holds the solid; infinite along `z` for a 2D shape.
     fn bounds(a: &[f64]) -> Aabb;
+    /// A box that holds all places where the value is at most `level` >= 0. A distance grows the box by the level; a value
+    /// that is only a bound may need more.
+    fn level_bounds(a: &[f64], level: f64) -> Aabb {
+        Self::bounds(a).grow(level)
+    }
     /// Largest slope of [`Self::distance`] anywhere; the compiler divides by it.
     fn lipschitz(_a: &[f64]) -> f64 {
         1.0

@@ -28,6 +28,7 @@ pub struct Entry {
     /// The formula and its gradient as two WGSL functions.
     pub shader: fn() -> String,
     pub bounds: fn(&[f64]) -> Aabb,
+    pub level_bounds: fn(&[f64], f64) -> Aabb,
     pub lipschitz: fn(&[f64]) -> f64,
     pub contains: fn(&[f64], Point) -> bool,
     pub check: fn(&[f64]) -> Result<(), String>,
@@ -57,6 +58,7 @@ pub fn entry<P: Primitive>() -> Entry {
         range: |b, a| P::distance(v3(b[0], b[1], b[2]), Args::new(a)),
         shader: shader::<P>,
         bounds: P::bounds,
+        level_bounds: P::level_bounds,
         lipschitz: P::lipschitz,
         contains: P::contains,
         check: P::check,

@@ -174,6 +174,27 @@ pub fn reached(case: &Case<'_>) -> Result<(), Failure> {
     Ok(())
 }
 
+/// The boxes of level sets hold them.
+pub fn levels(case: &Case<'_>) -> Result<(), Failure> {
+    let mut random = case.random(14);
+    for part in [0.02, 0.1, 0.4, 1.5] {
+        let level = part * case.size;
+        let holds = (case.entry.level_bounds)(&case.params, level).grow(1e-9 * case.size);
+        let window = case.core.grow(level + case.size);
+        for _ in 0..1500 {
+            let p = random.point(&window);
+            let value = case.value(p);
+            if value <= level && !holds.contains(p) {
+                return Err(case.fail(
+                    "levels",
+                    format!("{value} at {p:?} is at most {level}, which is not in {holds:?}"),
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
 /// The box holds the solid and little more.
 pub fn bounds(case: &Case<'_>) -> Result<(), Failure> {
     let mut random = case.random(9);

@@ -29,6 +29,7 @@ fn prove(e: &Entry) -> Result<(), Failure> {
             numbers::gradient(&case)?;
         }
         geometry::bounds(&case)?;
+        geometry::levels(&case)?;
         numbers::single(&case)?;
         numbers::interval(&case)?;
         numbers::any_size(&case)?;

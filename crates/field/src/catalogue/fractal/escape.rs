@@ -76,6 +76,10 @@ impl Fractal for Mandelbulb {
     fn bounds(a: &[f64]) -> Aabb {
         ball(bulb_radius(a[0]))
     }
+    /// Within 1/4 of the ball the value is the estimate, which may be small.
+    fn level_bounds(a: &[f64], level: f64) -> Aabb {
+        <Self as Fractal>::bounds(a).grow(if level > 0.0 { level.max(0.25) } else { 0.0 })
+    }
     fn contains(a: &[f64], p: [f64; 3]) -> bool {
         let mut z = p;
         for _ in 0..=a[1] as u32 {
@@ -190,6 +194,10 @@ impl Fractal for Mandelbox {
     }
     fn bounds(_a: &[f64]) -> Aabb {
         ball(1.0)
+    }
+    /// Within 1/10 of the cube the value is the estimate, which may be small.
+    fn level_bounds(_a: &[f64], level: f64) -> Aabb {
+        ball(1.0).grow(if level > 0.0 { level.max(0.1) } else { 0.0 })
     }
     fn contains(a: &[f64], p: [f64; 3]) -> bool {
         if p.iter().any(|x| x.abs() > 1.0) {
@@ -323,6 +331,10 @@ impl Fractal for Julia {
     fn bounds(a: &[f64]) -> Aabb {
         let c = (a[0] * a[0] + a[1] * a[1] + a[2] * a[2] + a[3] * a[3]).sqrt();
         ball(0.5 * (1.0 + (1.0 + 4.0 * c).sqrt()))
+    }
+    /// Within 1/4 of the ball the value is the estimate, which may be small.
+    fn level_bounds(a: &[f64], level: f64) -> Aabb {
+        <Self as Fractal>::bounds(a).grow(if level > 0.0 { level.max(0.25) } else { 0.0 })
     }
     fn contains(a: &[f64], p: [f64; 3]) -> bool {
         let mut q = [p[0], p[1], p[2], a[4]];

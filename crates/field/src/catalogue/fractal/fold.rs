@@ -157,6 +157,10 @@ impl Fractal for Sierpinski {
     fn bounds(_a: &[f64]) -> Aabb {
         ball(1.0)
     }
+    /// Beyond a corner the nearest face is sqrt(3) times nearer than the corner is along an axis.
+    fn level_bounds(_a: &[f64], level: f64) -> Aabb {
+        ball(1.0 + 1.733 * level)
+    }
     fn contains(a: &[f64], p: [f64; 3]) -> bool {
         let [x, y, z] = p;
         let inside = [-x - y - z, x + y - z, y + z - x, x + z - y]
@@ -194,7 +198,14 @@ impl Fractal for Kaleidoscope {
         group: "Fractals",
         dimension: Dimension::Three,
         params: &[
-            number("iterations", Unit::Count, &[8.0], 1.0, 24.0, "Steps of folding, turning and scaling."),
+            number(
+                "iterations",
+                Unit::Count,
+                &[8.0],
+                1.0,
+                24.0,
+                "Steps of folding, turning and scaling.",
+            ),
             number(
                 "factor",
                 Unit::Ratio,

@@ -35,6 +35,10 @@ pub trait Fractal: 'static {
     fn end<R: Real>(p: Vec3<R>, orbit: Orbit<R>, a: Args<'_, R>) -> R;
     /// See [`Primitive::bounds`].
     fn bounds(a: &[f64]) -> Aabb;
+    /// See [`Primitive::level_bounds`].
+    fn level_bounds(a: &[f64], level: f64) -> Aabb {
+        Self::bounds(a).grow(level)
+    }
     /// See [`Primitive::contains`].
     fn contains(a: &[f64], p: [f64; 3]) -> bool;
     /// See [`Primitive::check`].
@@ -98,6 +102,10 @@ impl<F: Fractal> Primitive for F {
 
     fn bounds(a: &[f64]) -> Aabb {
         F::bounds(a)
+    }
+
+    fn level_bounds(a: &[f64], level: f64) -> Aabb {
+        F::level_bounds(a, level)
     }
 
     fn contains(a: &[f64], p: [f64; 3]) -> bool {

@@ -111,6 +111,9 @@ macro_rules! generalised {
             fn bounds(a: &[f64]) -> Aabb {
                 Self::FAMILY.bounds(a)
             }
+            fn level_bounds(a: &[f64], level: f64) -> Aabb {
+                Self::FAMILY.bounds(&[a[0] + level, a[1]])
+            }
             fn lipschitz(a: &[f64]) -> f64 {
                 Self::FAMILY.lipschitz(a)
             }

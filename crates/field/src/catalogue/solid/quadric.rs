@@ -151,6 +151,11 @@ impl Primitive for Superquadric {
     fn bounds(a: &[f64]) -> Aabb {
         Aabb::centred(triple(a, 0))
     }
+    /// The value is the least radius times what the shape would have to be scaled by.
+    fn level_bounds(a: &[f64], level: f64) -> Aabb {
+        let scale = 1.0 + level / a[0].min(a[1]).min(a[2]);
+        Aabb::centred(triple(a, 0).map(|r| r * scale))
+    }
     fn lipschitz(a: &[f64]) -> f64 {
         let flat = power_norm_slope(1.0 / a[0], 1.0 / a[2], a[3]);
         power_norm_slope(flat, 1.0 / a[1], a[4]) * a[0].min(a[1]).min(a[2])
@@ -296,6 +301,15 @@ impl Primitive for Quadric {
             std::array::from_fn(|k| centre[k] - reach[k]),
             std::array::from_fn(|k| centre[k] + reach[k]),
         )
+    }
+
+    /// The value bends with the slope at the point: no box is claimed for its level sets.
+    fn level_bounds(a: &[f64], level: f64) -> Aabb {
+        if level > 0.0 {
+            Aabb::WHOLE
+        } else {
+            Self::bounds(a)
+        }
     }
 
     fn contains(a: &[f64], [x, y, z]: [f64; 3]) -> bool {
