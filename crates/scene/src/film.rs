@@ -76,16 +76,29 @@ pub struct Film {
 impl Film {
     /// A black film. The caller has checked the size against its limits.
     pub fn new(width: u32, height: u32) -> Film {
+        Film::with(width, height, &Plane::ALL)
+    }
+
+    /// A black film with some planes only; the others are empty.
+    pub fn with(width: u32, height: u32, planes: &[Plane]) -> Film {
         let pixels = width as usize * height as usize;
-        let planes = Plane::ALL
-            .iter()
-            .map(|p| vec![0.0; pixels * p.channels()])
-            .collect();
+        let numbers = |p: &Plane| {
+            if planes.contains(p) {
+                pixels * p.channels()
+            } else {
+                0
+            }
+        };
         Film {
             width,
             height,
-            planes,
+            planes: Plane::ALL.iter().map(|p| vec![0.0; numbers(p)]).collect(),
         }
+    }
+
+    /// Whether the film has this plane. (One without pixels has none.)
+    pub fn has(&self, plane: Plane) -> bool {
+        !self.plane(plane).is_empty()
     }
 
     /// Width in pixels.
@@ -98,7 +111,7 @@ impl Film {
         self.height
     }
 
-    /// The numbers of a plane, channels interleaved.
+    /// The numbers of a plane, channels interleaved; empty if the film does not have it.
     pub fn plane(&self, plane: Plane) -> &[f32] {
         &self.planes[plane as usize]
     }
@@ -106,5 +119,12 @@ impl Film {
     /// The numbers of a plane, to be written.
     pub fn plane_mut(&mut self, plane: Plane) -> &mut [f32] {
         &mut self.planes[plane as usize]
+    }
+
+    /// The numbers of all planes, to be written, in the order of [`Plane::ALL`].
+    pub fn planes_mut(&mut self) -> impl Iterator<Item = (Plane, &mut [f32])> {
+        Plane::ALL
+            .into_iter()
+            .zip(self.planes.iter_mut().map(Vec::as_mut_slice))
     }
 }

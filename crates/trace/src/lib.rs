@@ -1,1 +1,25 @@
-//! Placeholder.
+//! The CPU renderer: sphere tracing in SIMD streams.
+
+mod ao;
+pub mod bench;
+mod beam;
+mod camera;
+mod cone;
+mod job;
+mod march;
+mod marcher;
+mod material;
+mod normal;
+mod order;
+pub mod plain;
+mod planes;
+mod primary;
+mod renderer;
+mod resolve;
+mod sampling;
+mod shade;
+mod shadow;
+mod simd;
+mod tile;
+
+pub use renderer::{CpuRenderer, Picture};

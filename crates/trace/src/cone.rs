@@ -1,0 +1,203 @@
+//! The cone prepass: whole squares of pixels are marched as one cone each, so that their rays start near the surface.
+//!
+//! A cone of slope `k` is free up to `t` where the field is larger than its radius `w = k t + c`. Its clearance
+//! `(f - w) / (1 + k)` is a distance along the axis: it changes by at most 1 per unit, as the field does along a ray. So
+//! cones are marched like rays, by the same marchers.
+
+use crate::camera::Linear;
+use crate::march::{Arrived, ORDINAL, Sink, Source, Stream, stream};
+use crate::marcher::{Auto, Marcher, Sphere};
+use crate::order;
+use crate::simd::{Chosen, INSIDE, load, splat, store};
+use crate::tile::{Area, HEIGHT, Rays, Scratch, Solid, Spans, WIDTH};
+use fearless_simd::{Simd, prelude::*};
+use zeroset_field::number::lanes::LaneMask;
+use zeroset_field::number::{Lanes, Ops, Real, Vec3};
+use zeroset_scene::settings::March;
+
+/// Sides of the cells that are marched as one cone, in pixels. They nest, each with the next one's sides times 2 or 4.
+const SIDES: [usize; 4] = [32, 8, 4, 2];
+/// The cells for which the box of the scene is looked at where no cones are marched.
+const COARSE: [usize; 1] = [8];
+/// A cone ends where its clearance is this share of its radius: with none it would creep up to the surface for ever.
+const NEAR: f32 = 0.3;
+/// Share of a cone's clearance that the cones within it may count on: they lie within it but for rounding.
+const FREE: f32 = 0.98;
+/// Steps of a cone at most. Where they run out its rays start a little earlier.
+const STEPS: u32 = 64;
+
+/// Finds where the rays of every pixel of the tile start and end, and the slope of the field along them.
+///
+/// `reach` is how far rays go through a pixel from its middle, in pixels.
+pub(crate) fn prepass<S: Simd>(s: S, solid: &Solid<'_>, area: &Area, reach: f32, march: Option<March>, q: &mut Scratch) {
+    q.parents.start[..TILE_TOP].fill(0.0);
+    q.parents.end[..TILE_TOP].fill(f32::INFINITY);
+    q.parents.slope[..TILE_TOP].fill(-1.0);
+    q.parents.radius[..TILE_TOP].fill(0.0);
+    let mut above = TOP;
+    let sides: &[usize] = if march.is_some() { &SIDES } else { &COARSE };
+    for &side in sides {
+        let count = WIDTH / side * (HEIGHT / side);
+        expand(s, above / side, count, q);
+        let cells = Cells { solid, area, side, reach: 0.5 * (side as f32 - 1.0) + reach };
+        let width = enclose(s, &cells, count, q);
+        match march {
+            Some(March::Auto { beta }) => run(s, Auto { beta }, &cells, width, count, q),
+            Some(_) => run(s, Sphere, &cells, width, count, q),
+            None => {}
+        }
+        std::mem::swap(&mut q.spans, &mut q.parents);
+        above = side;
+    }
+    expand(s, above, WIDTH * HEIGHT, q);
+}
+
+/// The whole tile is made of cells of this side.
+const TOP: usize = 32;
+const TILE_TOP: usize = WIDTH / TOP * (HEIGHT / TOP);
+
+/// Gives every cell what its parent has. A parent has `ratio * ratio` cells.
+fn expand<S: Simd>(s: S, ratio: usize, count: usize, q: &mut Scratch) {
+    let (from, to) = (&q.parents, &mut q.spans);
+    let pairs = [
+        (&from.start, &mut to.start),
+        (&from.end, &mut to.end),
+        (&from.slope, &mut to.slope),
+        (&from.radius, &mut to.radius),
+    ];
+    s.vectorize(
+        #[inline(always)]
+        || {
+            for (from, to) in pairs {
+                match ratio {
+                    1 => to[..count].copy_from_slice(&from[..count]),
+                    2 => {
+                        for i in (0..count / 4).step_by(S::f32s::LEN) {
+                            let x = load(s, from, i).0;
+                            for (k, pair) in [x.zip_low(x), x.zip_high(x)].into_iter().enumerate() {
+                                let at = 4 * i + 2 * k * S::f32s::LEN;
+                                store(Lanes::<S>(pair.zip_low(pair)), to, at);
+                                store(Lanes::<S>(pair.zip_high(pair)), to, at + S::f32s::LEN);
+                            }
+                        }
+                    }
+                    _ => {
+                        let cells = ratio * ratio;
+                        for (cells, x) in to[..count].chunks_exact_mut(cells).zip(from.iter()) {
+                            cells.fill(*x);
+                        }
+                    }
+                }
+            }
+        },
+    );
+}
+
+/// The cells of one size.
+struct Cells<'a> {
+    solid: &'a Solid<'a>,
+    area: &'a Area,
+    side: usize,
+    /// How far their rays go from their middle, in pixels.
+    reach: f32,
+}
+
+impl Cells<'_> {
+    /// Middles of the cells from number `i` on, in pixels of the picture.
+    #[inline(always)]
+    fn middle<S: Simd>(&self, s: S, i: usize) -> (Lanes<S>, Lanes<S>) {
+        let (side, half) = (self.side as f32, 0.5 * self.side as f32);
+        (
+            load(s, &order::X, i) * side + (self.area.x as f32 + half),
+            load(s, &order::Y, i) * side + (self.area.y as f32 + half),
+        )
+    }
+}
+
+impl<S: Simd> Source<S> for Cells<'_> {
+    #[inline(always)]
+    fn ray(&self, s: S, i: usize) -> Vec3<Lanes<S>> {
+        let (x, y) = self.middle(s, i);
+        self.solid.view.ray(x, y)
+    }
+    #[inline(always)]
+    fn exists(&self, s: S, i: usize) -> LaneMask<S> {
+        let side = self.side as f32;
+        (load(s, &order::X, i) * side).below(self.area.width as f32)
+            & (load(s, &order::Y, i) * side).below(self.area.height as f32)
+    }
+}
+
+/// Cuts the spans of cells to where their cones can meet the scene's box. Returns the width of the widest cone.
+#[inline(always)]
+fn enclose<S: Simd>(s: S, cells: &Cells<'_>, count: usize, q: &mut Scratch) -> Linear {
+    let (view, region) = (cells.solid.view, &cells.solid.region);
+    s.vectorize(
+        #[inline(always)]
+        || {
+            let mut widest = Linear { slope: 0.0, constant: 0.0 };
+            for i in (0..count).step_by(S::f32s::LEN) {
+                let (x, y) = cells.middle(s, i);
+                let (slope, constant) = view.cone(x, y, cells.reach);
+                widest.slope = widest.slope.max(slope.0.reduce_max());
+                widest.constant = constant;
+                let (o, d) = view.split(view.ray(x, y));
+                let (slope, constant) =
+                    (slope + view.threshold.slope, splat(s, constant + view.threshold.constant));
+                let start = region.enter(o, d, slope, constant).max(view.near).max(load(s, &q.spans.start, i));
+                let end = region.leave(o, d, slope, constant).min(view.far).min(load(s, &q.spans.end, i));
+                store(Lanes::select(start.below(end), start, splat(s, f32::INFINITY)), &mut q.spans.start, i);
+                store(end, &mut q.spans.end, i);
+            }
+            widest
+        },
+    )
+}
+
+fn run<S: Simd, M: Marcher>(s: S, marcher: M, cells: &Cells<'_>, width: Linear, count: usize, q: &mut Scratch) {
+    let share = 1.0 / (1.0 + width.slope);
+    let how = Stream {
+        solid: cells.solid,
+        width,
+        share,
+        threshold: Linear {
+            slope: width.slope * share * NEAR,
+            constant: (width.constant * share * NEAR).max(cells.solid.view.threshold.constant),
+        },
+        max_steps: STEPS,
+    };
+    q.next.start[..count].fill(f32::INFINITY);
+    q.next.end[..count].copy_from_slice(&q.spans.end[..count]);
+    let mut found = Found { spans: &mut q.next };
+    q.counts.prepass += stream(s, marcher, &how, cells, &q.spans, count, &mut q.rays, &mut q.work, &mut found);
+    std::mem::swap(&mut q.spans, &mut q.next);
+}
+
+/// Where cones ended.
+struct Found<'a> {
+    spans: &'a mut Spans,
+}
+
+impl<S: Simd> Sink<S> for Found<'_> {
+    #[inline(always)]
+    fn found(&mut self, done: Chosen<S>, at: &Arrived<S>) {
+        // all cones and rays within this one keep this far from the surface
+        let free = at.clearance.max(0.0) * FREE;
+        let mut bits = done.bits();
+        while bits != 0 {
+            let k = bits.trailing_zeros() as usize;
+            let word = at.word.as_slice()[k];
+            let cell = (word & ORDINAL) as usize;
+            self.spans.start[cell] = at.t.0.as_slice()[k];
+            self.spans.slope[cell] = at.m.0.as_slice()[k];
+            self.spans.radius[cell] = f32::from_bits(free.0.as_slice()[k].to_bits() | word & INSIDE);
+            bits &= bits - 1;
+        }
+    }
+    #[inline(always)]
+    fn left(&mut self, _gone: LaneMask<S>, _at: &Arrived<S>) {}
+    fn spent(&mut self, rays: &Rays, i: usize) {
+        let cell = (rays.word[i] & ORDINAL) as usize;
+        (self.spans.start[cell], self.spans.slope[cell], self.spans.radius[cell]) = (rays.t[i], -1.0, 0.0);
+    }
+}

@@ -1,0 +1,244 @@
+//! The stream of rays from the eye (and of the cones that go before them): a batch that is refilled as rays end.
+//!
+//! A batch holds up to [`BATCH`] rays. After every sample the rays that ended are taken out, the gap is closed, and new rays
+//! fill the end: batches stay full, and their state stays in the nearest cache. What a ray does depends on nothing but
+//! itself, so the picture does not depend on which rays share a batch.
+//!
+//! The word of a ray holds its pixel (12 bits), the iteration in which it began (19 bits, wrapping) and the side that it is
+//! marched on ([`INSIDE`]). Rays are in the order in which they began, so the first ones run out of steps first.
+
+use crate::camera::Linear;
+use crate::marcher::{Marcher, Step};
+use crate::simd::{Chosen, INSIDE, along, first_lanes, load, load_words, load3, sided, store3};
+use crate::tile::{Rays, Solid, Spans};
+use fearless_simd::{Simd, prelude::*};
+use std::ops::Range;
+use zeroset_field::eval::{self, BATCH, Workspace};
+use zeroset_field::number::lanes::LaneMask;
+use zeroset_field::number::{Lanes, Ops, Real, Vec3};
+
+/// Where the pixel (or hit) of a word ends and the iteration begins.
+pub(crate) const ORDINAL_BITS: u32 = 12;
+/// The pixel (or hit) of a word.
+pub(crate) const ORDINAL: u32 = (1 << ORDINAL_BITS) - 1;
+/// Iterations are counted modulo this plus one.
+pub(crate) const ITERATIONS: u32 = (1 << (31 - ORDINAL_BITS)) - 1;
+
+/// Evaluations since a ray began.
+#[inline(always)]
+pub(crate) fn age(word: u32, iteration: u32) -> u32 {
+    iteration.wrapping_sub(word >> ORDINAL_BITS) & ITERATIONS
+}
+
+/// Where the rays of a stream come from.
+pub(crate) trait Source<S: Simd> {
+    /// What differs from ray to ray (see [`crate::camera::View::ray`]), for those from number `i` on.
+    fn ray(&self, s: S, i: usize) -> Vec3<Lanes<S>>;
+    /// Which of the rays from number `i` on there are.
+    fn exists(&self, s: S, i: usize) -> LaneMask<S>;
+}
+
+/// Rays that ended.
+pub(crate) struct Arrived<S: Simd> {
+    pub(crate) ray: Vec3<Lanes<S>>,
+    pub(crate) t: Lanes<S>,
+    /// Value of the field, from the side that was marched.
+    pub(crate) f: Lanes<S>,
+    /// How much larger it is than the cone.
+    pub(crate) clearance: Lanes<S>,
+    /// Slope of the field along the ray.
+    pub(crate) m: Lanes<S>,
+    pub(crate) word: S::u32s,
+    pub(crate) iteration: u32,
+}
+
+impl<S: Simd> Arrived<S> {
+    /// Evaluations that the rays took.
+    #[inline(always)]
+    pub(crate) fn steps(&self) -> S::u32s {
+        let s = self.t.0.token();
+        ((S::u32s::splat(s, self.iteration) - (self.word >> ORDINAL_BITS)) & ITERATIONS) + 1
+    }
+}
+
+/// Where the rays of a stream go.
+pub(crate) trait Sink<S: Simd> {
+    /// These met the surface.
+    fn found(&mut self, done: Chosen<S>, at: &Arrived<S>);
+    /// These left.
+    fn left(&mut self, gone: LaneMask<S>, at: &Arrived<S>);
+    /// Ray number `i` ran out of steps.
+    fn spent(&mut self, rays: &Rays, i: usize);
+}
+
+/// What is marched, and as what.
+pub(crate) struct Stream<'a> {
+    pub(crate) solid: &'a Solid<'a>,
+    /// Radius of the cones; zero for rays.
+    pub(crate) width: Linear,
+    /// Share of its clearance that a cone may go on: 1 / (1 + slope).
+    pub(crate) share: f32,
+    /// A clearance below this is a hit.
+    pub(crate) threshold: Linear,
+    /// Evaluations that each may take.
+    pub(crate) max_steps: u32,
+}
+
+/// Marches rays or cones number 0 to `count` as far as they have a span. Returns the evaluations.
+#[expect(clippy::too_many_arguments, reason = "separate parts of the scratch memory")]
+pub(crate) fn stream<S: Simd, M: Marcher>(
+    s: S,
+    marcher: M,
+    how: &Stream<'_>,
+    source: &impl Source<S>,
+    spans: &Spans,
+    count: usize,
+    rays: &mut Rays,
+    work: &mut Workspace,
+    sink: &mut impl Sink<S>,
+) -> u64 {
+    s.vectorize(
+        #[inline(always)]
+        || {
+            rays.count = 0;
+            let (mut next, mut iteration, mut evaluations) = (0, 0, 0);
+            loop {
+                while next < count && rays.count + S::f32s::LEN <= BATCH {
+                    begin(s, marcher, source, spans, next..count, iteration, rays);
+                    next += S::f32s::LEN;
+                }
+                if rays.count == 0 {
+                    break;
+                }
+                sample(s, how.solid, rays, work);
+                evaluations += rays.count as u64;
+                advance(s, marcher, how, iteration, rays, work, sink);
+                iteration += 1;
+                retire(how.max_steps, iteration, rays, sink);
+            }
+            evaluations
+        },
+    )
+}
+
+/// Puts the first rays of the range into the batch.
+#[inline(always)]
+fn begin<S: Simd, M: Marcher>(
+    s: S,
+    marcher: M,
+    source: &impl Source<S>,
+    spans: &Spans,
+    range: Range<usize>,
+    iteration: u32,
+    rays: &mut Rays,
+) {
+    let (at, n) = (range.start, rays.count);
+    let (start, end) = (load(s, &spans.start, at), load(s, &spans.end, at));
+    let new = Chosen::new(start.below(end) & source.exists(s, at) & first_lanes(s, range.len()));
+    if new.none() {
+        return;
+    }
+    new.put3(source.ray(s, at), &mut rays.ray, n);
+    let (radius, slope) = (load(s, &spans.radius, at), load(s, &spans.slope, at));
+    let r = radius.abs();
+    new.put(start, &mut rays.t, n);
+    new.put(end, &mut rays.end, n);
+    new.put(slope, &mut rays.m, n);
+    new.put(marcher.begin(r, slope).min(end - start), &mut rays.z, n);
+    new.put(r, &mut rays.r, n);
+    let (ordinal, side) = (S::u32s::from_fn(s, #[inline(always)] |k| k as u32) + (at as u32), radius.0.bitcast::<S::u32s>() & INSIDE);
+    new.put_words(ordinal | side | (iteration & ITERATIONS) << ORDINAL_BITS, &mut rays.word, n);
+    rays.count += new.count;
+}
+
+/// Evaluates the field at the next place of every ray.
+#[inline(always)]
+fn sample<S: Simd>(s: S, solid: &Solid<'_>, rays: &Rays, work: &mut Workspace) {
+    let points = work.points_mut();
+    for i in (0..rays.count).step_by(S::f32s::LEN) {
+        let (o, d) = solid.view.split(load3(s, &rays.ray, i));
+        let at = along(o, d, load(s, &rays.t, i) + load(s, &rays.z, i));
+        store3(at, points, i);
+    }
+    eval::values(s, solid.program, work, rays.count);
+}
+
+/// Moves every ray on, and takes those out that arrived or left.
+#[inline(always)]
+fn advance<S: Simd, M: Marcher>(
+    s: S,
+    marcher: M,
+    how: &Stream<'_>,
+    iteration: u32,
+    rays: &mut Rays,
+    work: &Workspace,
+    sink: &mut impl Sink<S>,
+) {
+    let count = rays.count;
+    let mut kept = 0;
+    for i in (0..count).step_by(S::f32s::LEN) {
+        let live = first_lanes(s, count - i);
+        let value = load(s, &work.values().0, i);
+        let at = Step { t: load(s, &rays.t, i), z: load(s, &rays.z, i), r: load(s, &rays.r, i), m: load(s, &rays.m, i) };
+        let word = load_words(s, &rays.word, i);
+        let first = (word >> ORDINAL_BITS & ITERATIONS).simd_eq(iteration & ITERATIONS);
+        // rays of whose start nothing is known take the side of their first sample
+        let unknown = first & at.r.0.simd_le(0.0);
+        let word = word | unknown.select(value.0.bitcast::<S::u32s>() & INSIDE, S::u32s::splat(s, 0));
+        let first = LaneMask(first);
+        let f = sided(value, word);
+        let to = at.t + at.z;
+        let clearance = (f - how.width.at(to)) * how.share;
+        let next = marcher.advance(at, clearance, how.threshold.at(to), first);
+        let (step, end) = (next.step, load(s, &rays.end, i));
+        // not "above the end": a ray whose numbers are none must end too
+        let within = (step.t + step.r).below(end);
+        let ray = load3(s, &rays.ray, i);
+        let done = Chosen::new(next.hit & live);
+        let on = Chosen::new(live & !next.hit & within);
+        if done.count + on.count < S::f32s::LEN || !done.none() {
+            let arrived = Arrived { ray, t: step.t, f, clearance, m: step.m, word, iteration };
+            if !done.none() {
+                sink.found(done, &arrived);
+            }
+            sink.left(live & !next.hit & !within, &arrived);
+        }
+        if on.none() {
+            continue;
+        }
+        if !on.all() || kept != i {
+            on.put3(ray, &mut rays.ray, kept);
+            on.put(end, &mut rays.end, kept);
+        }
+        on.put_words(word, &mut rays.word, kept);
+        on.put(step.t, &mut rays.t, kept);
+        on.put(step.z.min(end - step.t), &mut rays.z, kept);
+        on.put(step.r, &mut rays.r, kept);
+        on.put(step.m, &mut rays.m, kept);
+        kept += on.count;
+    }
+    rays.count = kept;
+}
+
+/// Takes out the rays that ran out of steps: the first ones of the batch.
+#[inline(always)]
+fn retire<S: Simd>(max_steps: u32, iteration: u32, rays: &mut Rays, sink: &mut impl Sink<S>) {
+    let old = |w: &u32| age(*w, iteration) >= max_steps;
+    let spent = rays.word[..rays.count].iter().take_while(|w| old(w)).count();
+    if spent > 0 {
+        (0..spent).for_each(|i| sink.spent(rays, i));
+        rays.remove_first(spent);
+    }
+}
+
+impl Rays {
+    fn remove_first(&mut self, n: usize) {
+        let rest = n..self.count;
+        for column in self.ray.iter_mut().chain([&mut self.t, &mut self.z, &mut self.r, &mut self.m, &mut self.end]) {
+            column.copy_within(rest.clone(), 0);
+        }
+        self.word.copy_within(rest, 0);
+        self.count -= n;
+    }
+}
+

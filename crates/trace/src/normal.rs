@@ -1,0 +1,188 @@
+//! What is known of a hit once its ray has ended: the exact place, the residual, the normal.
+
+use crate::simd::{along, load, load_words, load3, sided, splat3, store, store3};
+use crate::tile::{Hits, Scratch, Solid};
+use fearless_simd::{Simd, prelude::*};
+use zeroset_field::eval::{self, BATCH, Lane, Workspace};
+use zeroset_field::number::{Lanes, Ops, Real, Vec3, v3};
+use zeroset_scene::settings::Normals;
+
+/// Least distance between the samples of a normal, as a share of the largest coordinate: with less, the rounding of single
+/// precision would show as noise.
+const LEAST_STEP: f32 = 1.0 / 16384.0;
+
+/// Puts hits where the footprint of their pixel meets the surface (Keinert 2014, 3.4, equations 2 and 3), finds the points,
+/// and the values there if they are wanted.
+pub(crate) fn place<S: Simd>(s: S, solid: &Solid<'_>, rounds: u32, residual: bool, q: &mut Scratch) {
+    s.vectorize(
+        #[inline(always)]
+        || {
+            let threshold = solid.threshold();
+            for k in (0..q.hits.count).step_by(BATCH) {
+                let n = (q.hits.count - k).min(BATCH);
+                for _ in 0..rounds {
+                    sample(s, solid, n, &mut q.work, #[inline(always)] |i| point_of(s, solid, &q.hits, k + i));
+                    q.counts.march += n as u64;
+                    for i in (0..n).step_by(S::f32s::LEN) {
+                        let t = load(s, &q.hits.t, k + i);
+                        let f = sided(load(s, &q.work.values().0, i), load_words(s, &q.hits.word, k + i));
+                        let wanted = threshold.at(t);
+                        // a hit that was taken for want of steps may be far from the surface: it stays
+                        let by = (f - wanted).clamp(-(wanted * 2.0), wanted * 2.0);
+                        store((t + by).max(0.0), &mut q.hits.t, k + i);
+                    }
+                }
+                for i in (0..n).step_by(S::f32s::LEN) {
+                    let p = point_of(s, solid, &q.hits, k + i);
+                    store3(p, &mut q.hits.point, k + i);
+                    let (t, f) = (load(s, &q.hits.t, k + i), load(s, &q.hits.f, k + i));
+                    store(f.abs().max(threshold.at(t)) * 2.0, &mut q.hits.offset, k + i);
+                }
+                if residual && rounds > 0 {
+                    sample(s, solid, n, &mut q.work, #[inline(always)] |i| load3(s, &q.hits.point, k + i));
+                    q.counts.march += n as u64;
+                    q.hits.residual[k..k + n].copy_from_slice(&q.work.values().0[..n]);
+                } else if residual {
+                    q.hits.residual[k..k + n].copy_from_slice(&q.hits.f[k..k + n]);
+                }
+            }
+        },
+    );
+}
+
+/// Evaluates the field at `n` points that are made by vectors.
+#[inline(always)]
+pub(crate) fn sample<S: Simd>(
+    s: S,
+    solid: &Solid<'_>,
+    n: usize,
+    work: &mut Workspace,
+    point: impl Fn(usize) -> Vec3<Lanes<S>>,
+) {
+    fill(n, work, point);
+    eval::values(s, solid.program, work, n);
+}
+
+#[inline(always)]
+fn fill<S: Simd>(n: usize, work: &mut Workspace, point: impl Fn(usize) -> Vec3<Lanes<S>>) {
+    let points = work.points_mut();
+    for i in (0..n).step_by(S::f32s::LEN) {
+        store3(point(i), points, i);
+    }
+}
+
+#[inline(always)]
+fn point_of<S: Simd>(s: S, solid: &Solid<'_>, hits: &Hits, i: usize) -> Vec3<Lanes<S>> {
+    let (o, d) = solid.view.split(load3(s, &hits.ray, i));
+    along(o, d, load(s, &hits.t, i))
+}
+
+/// The corners of a tetrahedron, from its middle.
+pub(crate) const TETRAHEDRON: [[f32; 3]; 4] =
+    [[1.0, -1.0, -1.0], [-1.0, -1.0, 1.0], [-1.0, 1.0, -1.0], [1.0, 1.0, 1.0]];
+/// Both ways along each axis.
+pub(crate) const CENTRAL: [[f32; 3]; 6] =
+    [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]];
+
+/// The neighbours in a cube of 27 that differ in at most `most` coordinates, sides first.
+pub(crate) const fn neighbours<const N: usize>(most: usize) -> [[f32; 3]; N] {
+    let mut out = [[0.0; 3]; N];
+    let (mut at, mut axes) = (0, 1);
+    while axes <= most {
+        let mut i = 0;
+        while i < 27 {
+            let c = [i % 3, i / 3 % 3, i / 9];
+            if (c[0] != 1) as usize + (c[1] != 1) as usize + (c[2] != 1) as usize == axes {
+                out[at] = [c[0] as f32 - 1.0, c[1] as f32 - 1.0, c[2] as f32 - 1.0];
+                at += 1;
+            }
+            i += 1;
+        }
+        axes += 1;
+    }
+    out
+}
+
+/// Sides and edges of a cube.
+pub(crate) const NEIGHBOURS_18: [[f32; 3]; 18] = neighbours(2);
+/// Sides, edges and corners of a cube.
+pub(crate) const NEIGHBOURS_26: [[f32; 3]; 26] = neighbours(3);
+
+/// Distance between the samples of a normal at `p`: half a pixel, but not less than single precision can tell.
+#[inline(always)]
+pub(crate) fn step<R: Real<Scalar = f32>>(p: Vec3<R>, pixel: R) -> R {
+    (pixel * 0.5).max(p.abs().max_component() * LEAST_STEP).max(1e-18)
+}
+
+/// Finds the normals of all hits, on the side that is marched.
+pub(crate) fn normals<S: Simd>(s: S, solid: &Solid<'_>, kind: Normals, q: &mut Scratch) {
+    match kind {
+        Normals::Tetrahedron => by_samples(s, solid, &TETRAHEDRON, q),
+        Normals::Central => by_samples(s, solid, &CENTRAL, q),
+        Normals::Samples18 => by_samples(s, solid, &NEIGHBOURS_18, q),
+        Normals::Samples26 => by_samples(s, solid, &NEIGHBOURS_26, q),
+        Normals::Exact => by_gradients(s, solid, q),
+    }
+}
+
+/// Sum of the samples' directions, each times the value found there: for samples that are spread evenly it points along the
+/// gradient (Zucker and Hummel 1981 weight the neighbours on a grid so).
+fn by_samples<S: Simd>(s: S, solid: &Solid<'_>, samples: &[[f32; 3]], q: &mut Scratch) {
+    s.vectorize(
+        #[inline(always)]
+        || {
+            for k in (0..q.hits.count).step_by(BATCH) {
+                let n = (q.hits.count - k).min(BATCH);
+                let mut sum = [Lane::ZERO; 3];
+                for &to in samples {
+                    let length = (to[0] * to[0] + to[1] * to[1] + to[2] * to[2]).sqrt();
+                    let hits = &q.hits;
+                    sample(s, solid, n, &mut q.work, #[inline(always)] |i| {
+                        let p = load3(s, &hits.point, k + i);
+                        let h = step(p, solid.view.pixel.at(load(s, &hits.t, k + i)));
+                        along(p, splat3(s, to), h)
+                    });
+                    q.counts.normal += n as u64;
+                    for i in (0..n).step_by(S::f32s::LEN) {
+                        let f = load(s, &q.work.values().0, i);
+                        let way = splat3(s, [to[0] / length, to[1] / length, to[2] / length]);
+                        store3(along(load3(s, &sum, i), way, f), &mut sum, i);
+                    }
+                }
+                for i in (0..n).step_by(S::f32s::LEN) {
+                    finish(s, solid, &mut q.hits, k + i, load3(s, &sum, i));
+                }
+            }
+        },
+    );
+}
+
+fn by_gradients<S: Simd>(s: S, solid: &Solid<'_>, q: &mut Scratch) {
+    s.vectorize(
+        #[inline(always)]
+        || {
+            for k in (0..q.hits.count).step_by(BATCH) {
+                let n = (q.hits.count - k).min(BATCH);
+                fill(n, &mut q.work, #[inline(always)] |i| load3(s, &q.hits.point, k + i));
+                eval::gradients(s, solid.program, &mut q.work, n);
+                q.counts.normal += n as u64;
+                for i in (0..n).step_by(S::f32s::LEN) {
+                    finish(s, solid, &mut q.hits, k + i, load3(s, q.work.gradients(), i));
+                }
+            }
+        },
+    );
+}
+
+/// Normalises; where there is no gradient the normal looks back along the ray.
+#[inline(always)]
+fn finish<S: Simd>(s: S, solid: &Solid<'_>, hits: &mut Hits, i: usize, g: Vec3<Lanes<S>>) {
+    let word = load_words(s, &hits.word, i);
+    let (_, d) = solid.view.split(load3(s, &hits.ray, i));
+    let square = g.length_squared();
+    let fit = square.above(1e-36) & square.below(f32::INFINITY);
+    let scale = square.lit(1.0) / square.sqrt();
+    let n = g * sided(scale, word);
+    let n = v3(Lanes::select(fit, n.x, -d.x), Lanes::select(fit, n.y, -d.y), Lanes::select(fit, n.z, -d.z));
+    store3(n, &mut hits.normal, i);
+}

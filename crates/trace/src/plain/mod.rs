@@ -1,0 +1,238 @@
+//! The same algorithms, one ray at a time, in plain code: the reference that the stream is tested against and the baseline
+//! of its benchmark.
+//!
+//! It shares the formulas of cameras, filters, patterns and light with the stream. All that the stream does in its own way
+//! is written anew here: marching (without cones), hits, normals, occlusion, shadows, samples and their filter.
+
+pub mod dense;
+mod light;
+mod march;
+mod probe;
+
+pub use probe::{Compiled, Formula, Mark, Probe};
+
+use crate::camera::{Region, View};
+use crate::material::{Place, colour as pattern_colour};
+use crate::sampling::{point, radius, scramble, weight};
+use crate::shade::{Substance, colour, sky};
+use glam::Vec3;
+use light::Surface;
+use rayon::prelude::*;
+use zeroset_field::bounds::Aabb;
+use zeroset_field::number::v3;
+use zeroset_scene::film::{Film, Plane};
+use zeroset_scene::material::Material;
+use zeroset_scene::scene::Scene;
+use zeroset_scene::settings::{Antialias, Filter, Settings};
+
+pub(crate) fn glam(v: zeroset_field::number::Vec3<f32>) -> Vec3 {
+    Vec3::new(v.x, v.y, v.z)
+}
+
+pub(crate) fn field(v: Vec3) -> zeroset_field::number::Vec3<f32> {
+    v3(v.x, v.y, v.z)
+}
+
+/// What a ray found.
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    colour: Vec3,
+    hit: Option<Hit>,
+    steps: u32,
+}
+
+/// What a ray hit.
+#[derive(Clone, Copy, Debug)]
+struct Hit {
+    t: f32,
+    residual: f32,
+    normal: Vec3,
+    albedo: Vec3,
+    open: f32,
+    shadow: f32,
+    object: f32,
+}
+
+/// Renders a scene on the threads of the pool that it is called in. `bounds` is a box that holds the solid; `probe` makes an
+/// evaluator of the field.
+pub fn render<P: Probe>(scene: &Scene, bounds: &Aabb, probe: impl Fn() -> P + Sync) -> Film {
+    let settings = &scene.settings;
+    let [width, height] = settings.size;
+    let plain = Plain {
+        scene,
+        settings,
+        view: View::new(&scene.camera, settings.size, settings.footprint),
+        region: Region::new(bounds),
+        fallback: Material::default(),
+    };
+    let samples = match settings.antialias {
+        Antialias::None => 1,
+        Antialias::Supersample { samples, .. } => samples.max(1),
+    };
+    let rows: Vec<Vec<Sample>> = (0..height)
+        .into_par_iter()
+        .map_init(&probe, |probe, y| {
+            let pixels = (0..width).flat_map(|x| (0..samples).map(move |i| (x, i)));
+            pixels.map(|(x, i)| plain.sample(probe, x, y, i)).collect()
+        })
+        .collect();
+    plain.film(&rows, samples)
+}
+
+struct Plain<'a> {
+    scene: &'a Scene,
+    settings: &'a Settings,
+    view: View,
+    region: Region,
+    fallback: Material,
+}
+
+impl Plain<'_> {
+    /// Where sample number `index` of a pixel is.
+    fn jitter(&self, x: u32, y: u32, index: u32) -> [f32; 2] {
+        match self.settings.antialias {
+            Antialias::None => [0.5; 2],
+            Antialias::Supersample { .. } => point(index, scramble(x, y, self.settings.seed)),
+        }
+    }
+
+    fn sample(&self, probe: &mut impl Probe, x: u32, y: u32, index: u32) -> Sample {
+        let [u, v] = self.jitter(x, y, index);
+        let ray = self.view.ray(x as f32 + u, y as f32 + v);
+        let (o, d) = self.view.split(ray);
+        let (o, d) = (glam(o), glam(d));
+        let found = self.march(probe, o, d);
+        let Some(end) = found.hit else {
+            return Sample { colour: glam(sky(&self.scene.sky, d.y)), hit: None, steps: found.steps };
+        };
+        let (mut t, side) = (end.t, end.side);
+        for _ in 0..self.settings.discontinuity_reduction {
+            let wanted = self.view.threshold.at(t);
+            let by = side * probe.value(o + d * t) - wanted;
+            t = (t + by.clamp(-2.0 * wanted, 2.0 * wanted)).max(0.0);
+        }
+        let p = o + d * t;
+        let offset = 2.0 * end.f.abs().max(self.view.threshold.at(t));
+        let normal = self.normal(probe, p, d, t, side);
+        let mark = probe.marks(p);
+        let surface = Surface { p, normal, side, offset, d };
+        let key = scramble(x, y, self.settings.seed ^ (index + 1).wrapping_mul(0x9e37_79b9));
+        let (open, bent) = self.occlusion(probe, &surface, mark.object, key);
+        let samples = match self.settings.antialias {
+            Antialias::None => 1.0,
+            Antialias::Supersample { samples, .. } => samples.max(1) as f32,
+        };
+        let pixel = self.view.pixel.at(t) / samples.sqrt();
+        let (what, shininess) = self.substance(&mark, &Place::new(field(p), field(normal), field(d), pixel));
+        let light = self.light(probe, &surface, shininess);
+        let c = colour(
+            self.settings.shading,
+            &self.scene.sky,
+            &what,
+            field(light.diffuse),
+            field(light.gloss),
+            field(normal),
+            field(bent),
+            field(d),
+            open,
+        );
+        let hit = Hit {
+            t,
+            residual: probe.value(p).abs(),
+            normal,
+            albedo: glam(what.albedo),
+            open,
+            shadow: light.shadow,
+            object: mark.object + 1.0,
+        };
+        Sample { colour: glam(c), hit: Some(hit), steps: found.steps }
+    }
+
+    fn material(&self, number: f32) -> &Material {
+        let at = if number >= 0.0 { number as usize } else { usize::MAX };
+        self.scene.materials.get(at).unwrap_or(&self.fallback)
+    }
+
+    fn substance(&self, mark: &Mark, at: &Place<f32>) -> (Substance<f32>, f32) {
+        let of = |m: &Material, weight: f32| Substance {
+            albedo: pattern_colour(&m.pattern, at) * weight,
+            emission: field(m.emission * weight),
+            specular: m.specular * weight,
+            metallic: m.metallic * weight,
+            roughness: m.roughness * weight,
+        };
+        let first = self.material(mark.first);
+        let a = of(first, 1.0 - mark.share);
+        if mark.share <= 0.0 {
+            return (a, first.shininess);
+        }
+        let second = self.material(mark.second);
+        let b = of(second, mark.share);
+        let mixed = Substance {
+            albedo: a.albedo + b.albedo,
+            emission: a.emission + b.emission,
+            specular: a.specular + b.specular,
+            metallic: a.metallic + b.metallic,
+            roughness: a.roughness + b.roughness,
+        };
+        (mixed, first.shininess + (second.shininess - first.shininess) * mark.share)
+    }
+
+    /// Filters the samples, row by row, pixel by pixel.
+    fn film(&self, rows: &[Vec<Sample>], samples: u32) -> Film {
+        let [width, height] = self.settings.size;
+        let mut film = Film::new(width, height);
+        let filter = match self.settings.antialias {
+            Antialias::None => Filter::Box,
+            Antialias::Supersample { filter, .. } => filter,
+        };
+        let reach = radius(filter) as i32;
+        for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+            let at = (y * width + x) as usize;
+            let (mut sum, mut cover, mut weights) = (Vec3::ZERO, 0.0, 0.0);
+            for (dy, dx) in (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dy, dx))) {
+                let (sx, sy) = (x as i32 + dx, y as i32 + dy);
+                if sx < 0 || sy < 0 || sx >= width as i32 || sy >= height as i32 {
+                    continue;
+                }
+                for i in 0..samples {
+                    let [u, v] = self.jitter(sx as u32, sy as u32, i);
+                    let sample = &rows[sy as usize][(sx as u32 * samples + i) as usize];
+                    let w = weight(filter, u - 0.5 + dx as f32) * weight(filter, v - 0.5 + dy as f32);
+                    sum += sample.colour * w;
+                    cover += if sample.hit.is_some() { w } else { 0.0 };
+                    weights += w;
+                }
+            }
+            let own = &rows[y as usize][(x * samples) as usize..][..samples as usize];
+            let colour = (sum / weights.max(1e-6)).max(Vec3::ZERO);
+            write(&mut film, at, colour, (cover / weights.max(1e-6)).clamp(0.0, 1.0), own);
+        }
+        film
+    }
+}
+
+/// Writes a pixel of all planes.
+fn write(film: &mut Film, at: usize, colour: Vec3, coverage: f32, samples: &[Sample]) {
+    let hits: Vec<&Hit> = samples.iter().filter_map(|s| s.hit.as_ref()).collect();
+    let nearest = hits.iter().copied().min_by(|a, b| a.t.total_cmp(&b.t));
+    let mean = |f: fn(&Hit) -> f32| {
+        if hits.is_empty() { 1.0 } else { hits.iter().map(|h| f(h)).sum::<f32>() / hits.len() as f32 }
+    };
+    let normal: Vec3 = hits.iter().map(|h| h.normal).sum();
+    let albedo: Vec3 = hits.iter().map(|h| h.albedo).sum();
+    let steps = samples.iter().map(|s| s.steps as f32).sum::<f32>() / samples.len() as f32;
+    let mut put = |plane: Plane, values: &[f32]| {
+        film.plane_mut(plane)[at * values.len()..][..values.len()].copy_from_slice(values);
+    };
+    put(Plane::Colour, &colour.to_array());
+    put(Plane::Coverage, &[coverage]);
+    put(Plane::Depth, &[nearest.map_or(f32::INFINITY, |h| h.t)]);
+    put(Plane::Normal, &normal.normalize_or_zero().to_array());
+    put(Plane::Albedo, &(albedo / hits.len().max(1) as f32).to_array());
+    put(Plane::Occlusion, &[mean(|h| h.open)]);
+    put(Plane::Shadow, &[mean(|h| h.shadow)]);
+    put(Plane::Steps, &[steps]);
+    put(Plane::Residual, &[nearest.map_or(0.0, |h| h.residual)]);
+    put(Plane::Object, &[nearest.map_or(0.0, |h| h.object)]);
+}

@@ -1,0 +1,94 @@
+//! What the plain renderer asks of a field.
+
+use fearless_simd::{Level, dispatch};
+use glam::Vec3;
+use zeroset_field::eval::{self, Point, Workspace};
+use zeroset_field::number::{Dual, v3};
+use zeroset_field::program::Program;
+
+/// The marks of a surface. Numbers are whole, -1 where there is none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mark {
+    /// Object.
+    pub object: f32,
+    /// The material that counts most.
+    pub first: f32,
+    /// The material that counts second.
+    pub second: f32,
+    /// Share of the second.
+    pub share: f32,
+}
+
+/// Evaluates a field, one point at a time.
+pub trait Probe {
+    /// The value.
+    fn value(&mut self, p: Vec3) -> f32;
+    /// The gradient.
+    fn gradient(&mut self, p: Vec3) -> Vec3;
+    /// The marks.
+    fn marks(&mut self, p: Vec3) -> Mark;
+}
+
+/// A program, interpreted.
+pub struct Compiled<'p> {
+    program: &'p Program,
+    values: Point<'p, f32>,
+    gradients: Point<'p, Dual<f32>>,
+    /// The only mark there is, or memory to find one.
+    marks: Result<Mark, Box<Workspace>>,
+}
+
+impl<'p> Compiled<'p> {
+    /// An evaluator of `program`. `only` is the mark of the whole surface, if it has no other.
+    pub fn new(program: &'p Program, only: Option<Mark>) -> Self {
+        Compiled {
+            program,
+            values: Point::new(program),
+            gradients: Point::new(program),
+            marks: only.ok_or_else(|| Box::new(Workspace::new(program))),
+        }
+    }
+}
+
+impl Probe for Compiled<'_> {
+    fn value(&mut self, p: Vec3) -> f32 {
+        self.values.value(v3(p.x, p.y, p.z))
+    }
+
+    fn gradient(&mut self, p: Vec3) -> Vec3 {
+        Vec3::from(self.gradients.value(Dual::point(v3(p.x, p.y, p.z))).d)
+    }
+
+    fn marks(&mut self, p: Vec3) -> Mark {
+        let work = match &mut self.marks {
+            Ok(mark) => return *mark,
+            Err(work) => work,
+        };
+        for (lane, c) in work.points_mut().iter_mut().zip(p.to_array()) {
+            lane.0.fill(c);
+        }
+        dispatch!(Level::new(), s => eval::marks(s, self.program, work, 1));
+        let m = work.marks();
+        Mark { object: m.object.0[0], first: m.first.0[0], second: m.second.0[0], share: m.share.0[0] }
+    }
+}
+
+/// A function, with its gradient by central differences and one mark everywhere.
+#[derive(Clone, Copy, Debug)]
+pub struct Formula<F>(pub F);
+
+impl<F: Fn(Vec3) -> f32> Probe for Formula<F> {
+    fn value(&mut self, p: Vec3) -> f32 {
+        (self.0)(p)
+    }
+
+    fn gradient(&mut self, p: Vec3) -> Vec3 {
+        let h = 1e-3 * p.abs().max_element().max(1e-3);
+        let along = |axis: Vec3| ((self.0)(p + axis * h) - (self.0)(p - axis * h)) / (2.0 * h);
+        Vec3::new(along(Vec3::X), along(Vec3::Y), along(Vec3::Z))
+    }
+
+    fn marks(&mut self, _p: Vec3) -> Mark {
+        Mark { object: 0.0, first: 0.0, second: -1.0, share: 0.0 }
+    }
+}

@@ -1,0 +1,253 @@
+//! The renderer: tiles over threads, into a film.
+
+use crate::camera::Region;
+use crate::job::Job;
+use crate::resolve::{self, ACCUMULATORS};
+use crate::tile::{Area, HEIGHT, Scratch};
+use fearless_simd::{Level, dispatch};
+use rayon::ThreadPool;
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
+use zeroset_field::bounds::Aabb;
+use zeroset_field::catalogue::entries::catalogue;
+use zeroset_field::field::Field;
+use zeroset_field::program::{Limits, Operation, Program};
+use zeroset_scene::film::{Film, Plane};
+use zeroset_scene::render::{Evaluations, Frame, Observer, RenderError, Renderer, Statistics};
+use zeroset_scene::scene::Scene;
+use zeroset_scene::settings::Occlusion;
+
+/// The CPU's renderer: sphere tracing in SIMD streams, over all threads that it is given.
+///
+/// The same scene gives the same picture, bit for bit, whatever the number of threads and the order of tiles.
+pub struct CpuRenderer {
+    pool: ThreadPool,
+    level: Level,
+    limits: Limits,
+}
+
+impl CpuRenderer {
+    /// A renderer with this many threads, or as many as the machine has cores.
+    ///
+    /// # Errors
+    /// [`RenderError::Threads`] where the system does not give that many.
+    pub fn new(threads: Option<usize>) -> Result<CpuRenderer, RenderError> {
+        let threads = threads.unwrap_or(0);
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .thread_name(|k| format!("render {k}"))
+            .build()
+            .map_err(|e| RenderError::Threads { threads, reason: e.to_string() })?;
+        Ok(CpuRenderer { pool, level: Level::new(), limits: Limits::default() })
+    }
+
+    /// With another SIMD level than the best one of the machine.
+    pub fn with_level(self, level: Level) -> CpuRenderer {
+        CpuRenderer { level, ..self }
+    }
+
+    /// With other limits on what the scene may compile to.
+    pub fn with_limits(self, limits: Limits) -> CpuRenderer {
+        CpuRenderer { limits, ..self }
+    }
+
+    /// Threads.
+    pub fn threads(&self) -> usize {
+        self.pool.current_num_threads()
+    }
+
+    /// Compiles a scene, so that it can be rendered more than once.
+    ///
+    /// # Errors
+    /// See [`RenderError`].
+    pub fn prepare<'a>(&self, scene: &'a Scene) -> Result<Picture<'a>, RenderError> {
+        Picture::new(scene, &self.limits)
+    }
+
+    /// Renders into a film that is there already, of any size, as far as it has planes.
+    ///
+    /// # Errors
+    /// [`RenderError::Cancelled`] where the observer asked for it; the film is then unfinished.
+    pub fn render_into(
+        &self,
+        picture: &Picture<'_>,
+        film: &mut Film,
+        observer: &dyn Observer,
+    ) -> Result<Statistics, RenderError> {
+        let began = Instant::now();
+        let run = Run::new(picture, film, self.level, observer);
+        let statistics = self.pool.install(|| run.all(film));
+        if run.cancelled.into_inner() {
+            return Err(RenderError::Cancelled);
+        }
+        Ok(Statistics { seconds: began.elapsed().as_secs_f64(), threads: self.threads(), ..statistics })
+    }
+}
+
+impl Renderer for CpuRenderer {
+    fn render(&self, scene: &Scene, observer: &dyn Observer) -> Result<Frame, RenderError> {
+        let picture = self.prepare(scene)?;
+        let [width, height] = scene.settings.size;
+        let mut film = Film::new(width, height);
+        let statistics = self.render_into(&picture, &mut film, observer)?;
+        Ok(Frame { film, statistics })
+    }
+}
+
+/// A scene that is ready to be rendered.
+pub struct Picture<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) program: Program,
+    /// Where the solid is; empty where the scene has no objects.
+    pub(crate) region: Region,
+    /// The only material there is, if there is only one.
+    pub(crate) material: Option<u16>,
+    /// The only object there is, if there is only one.
+    pub(crate) object: Option<u16>,
+    /// Occlusion methods that objects chose, each once; the first is the scene's.
+    pub(crate) methods: Vec<Occlusion>,
+    /// The method of every object.
+    pub(crate) method_of: Vec<usize>,
+    /// Memory of threads that are done with their tile.
+    spare: Mutex<Vec<Box<Scratch>>>,
+}
+
+impl<'a> Picture<'a> {
+    fn new(scene: &'a Scene, limits: &Limits) -> Result<Picture<'a>, RenderError> {
+        let (program, region) = match scene.field()? {
+            Some(field) => {
+                let program = Program::compile(&field, limits)?;
+                let region = Region::new(&program.bounds());
+                (program, region)
+            }
+            None => {
+                // no ray goes into an empty region: the program stands for nothing
+                let sphere = &catalogue().primitives[0];
+                let field = Field::primitive(sphere, sphere.info.defaults())?;
+                (Program::compile(&field, limits)?, Region::new(&Aabb::EMPTY))
+            }
+        };
+        let (mut materials, mut objects) = (BTreeSet::new(), BTreeSet::new());
+        for instruction in &program.structure().marks.instructions {
+            match instruction.operation {
+                Operation::Mark(0, number) => materials.insert(number),
+                Operation::Mark(_, number) => objects.insert(number),
+                _ => false,
+            };
+        }
+        let only = |set: &BTreeSet<u16>| if set.len() > 1 { None } else { Some(set.first().copied().unwrap_or(0)) };
+        let mut methods = vec![scene.settings.occlusion];
+        let mut method_of = Vec::new();
+        for object in &scene.objects {
+            let method = object.occlusion.unwrap_or(scene.settings.occlusion);
+            let at = methods.iter().position(|m| *m == method);
+            method_of.push(at.unwrap_or_else(|| {
+                methods.push(method);
+                methods.len() - 1
+            }));
+        }
+        let spare = Mutex::new(Vec::new());
+        Ok(Picture { scene, program, region, material: only(&materials), object: only(&objects), methods, method_of, spare })
+    }
+
+    /// What the scene compiled to.
+    pub fn program(&self) -> &Program {
+        &self.program
+    }
+}
+
+/// Rows of a film that tiles beside each other write to.
+type Band<'f> = Mutex<Vec<(Plane, &'f mut [f32])>>;
+
+/// One rendering.
+struct Run<'a> {
+    picture: &'a Picture<'a>,
+    size: [u32; 2],
+    job: Job<'a>,
+    level: Level,
+    observer: &'a dyn Observer,
+    cancelled: AtomicBool,
+}
+
+impl<'a> Run<'a> {
+    fn new(picture: &'a Picture<'a>, film: &Film, level: Level, observer: &'a dyn Observer) -> Run<'a> {
+        let size = [film.width(), film.height()];
+        let (job, cancelled) = (Job::new(picture, film), AtomicBool::new(false));
+        Run { picture, size, job, level, observer, cancelled }
+    }
+
+    fn all(&self, film: &mut Film) -> Statistics {
+        let tiles = Area::count(self.size);
+        let filtered = self.job.is_filtered();
+        let mut sums = vec![0.0; if filtered { tiles * ACCUMULATORS } else { 0 }];
+        let mut bands = bands(film);
+        let done: Done = if filtered {
+            let tiles = sums.par_chunks_exact_mut(ACCUMULATORS).enumerate();
+            tiles.map(|(k, sums)| self.tile(k, sums, &bands)).sum()
+        } else {
+            (0..tiles).into_par_iter().map(|k| self.tile(k, &mut [], &bands)).sum()
+        };
+        if filtered && !self.cancelled.load(Ordering::Relaxed) {
+            bands.par_iter_mut().enumerate().for_each(|(k, band)| {
+                let band = band.get_mut().unwrap_or_else(PoisonError::into_inner);
+                resolve::band(k, &sums, self.size, band);
+            });
+        }
+        let (rays, hits, evaluations) = (done.rays, done.hits, done.evaluations);
+        Statistics { rays, hits, evaluations, ..Statistics::default() }
+    }
+
+    /// Renders tile number `k`.
+    fn tile(&self, k: usize, sums: &mut [f32], bands: &[Band<'_>]) -> Done {
+        if self.cancelled.load(Ordering::Relaxed) || self.observer.is_cancelled() {
+            self.cancelled.store(true, Ordering::Relaxed);
+            return Done::default();
+        }
+        let area = Area::of(k, self.size);
+        let spare = &self.picture.spare;
+        let scratch = spare.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let mut q = scratch.unwrap_or_else(|| Box::new(Scratch::new(self.picture.program())));
+        q.counts = Evaluations::default();
+        let done = dispatch!(self.level, s => self.job.tile(s, &area, sums, &mut q));
+        let band = &mut *bands[area.y / HEIGHT].lock().unwrap_or_else(PoisonError::into_inner);
+        self.job.deliver(&area, self.size, &q, band);
+        spare.lock().unwrap_or_else(PoisonError::into_inner).push(q);
+        let total = u64::from(self.size[0]) * u64::from(self.size[1]) * u64::from(self.job.samples());
+        self.observer.advance(done.rays, total);
+        done
+    }
+}
+
+/// What tiles took. Sums of whole numbers: their order does not matter.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Done {
+    pub(crate) rays: u64,
+    pub(crate) hits: u64,
+    pub(crate) evaluations: Evaluations,
+}
+
+impl std::iter::Sum for Done {
+    fn sum<I: Iterator<Item = Done>>(all: I) -> Done {
+        all.fold(Done::default(), |a, b| Done {
+            rays: a.rays + b.rays,
+            hits: a.hits + b.hits,
+            evaluations: a.evaluations.plus(&b.evaluations),
+        })
+    }
+}
+
+/// The rows of all planes, cut into bands as high as a tile.
+fn bands(film: &mut Film) -> Vec<Band<'_>> {
+    let (width, height) = (film.width() as usize, film.height() as usize);
+    let mut bands: Vec<Vec<(Plane, &mut [f32])>> = (0..height.div_ceil(HEIGHT)).map(|_| Vec::new()).collect();
+    for (plane, numbers) in film.planes_mut() {
+        let rows = numbers.chunks_mut(width * plane.channels() * HEIGHT);
+        for (band, rows) in bands.iter_mut().zip(rows) {
+            band.push((plane, rows));
+        }
+    }
+    bands.into_iter().map(Mutex::new).collect()
+}

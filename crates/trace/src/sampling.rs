@@ -1,0 +1,143 @@
+//! Where samples go, the same in every run: low-discrepancy sequences scrambled by pixel, and the pixel's filter.
+
+use zeroset_field::number::{Real, Vec3, v3};
+use zeroset_scene::settings::Filter;
+
+/// The first two dimensions of Sobol's sequence (1967), as fractions of 2^32: any 2^k first points are spread evenly over
+/// all boxes of area 2^-k that halving the sides gives. Scrambling by exclusive or keeps that (Kollig and Keller 2002).
+#[inline(always)]
+pub(crate) fn sobol(index: u32) -> [u32; 2] {
+    let (mut i, mut direction, mut second) = (index, 1 << 31, 0);
+    while i != 0 {
+        if i & 1 == 1 {
+            second ^= direction;
+        }
+        i >>= 1;
+        direction ^= direction >> 1;
+    }
+    [index.reverse_bits(), second]
+}
+
+/// Two random numbers of a pixel: the generator pcg3d (Jarzynski and Olano 2020).
+#[inline(always)]
+pub(crate) fn scramble(x: u32, y: u32, seed: u32) -> [u32; 2] {
+    let mut v = [x, y, seed].map(#[inline(always)] |c| c.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
+    for _ in 0..2 {
+        v[0] = v[0].wrapping_add(v[1].wrapping_mul(v[2]));
+        v[1] = v[1].wrapping_add(v[2].wrapping_mul(v[0]));
+        v[2] = v[2].wrapping_add(v[0].wrapping_mul(v[1]));
+        v = v.map(#[inline(always)] |c| c ^ c >> 16);
+    }
+    [v[0], v[1]]
+}
+
+/// A fraction of 2^32 as a number in [0, 1).
+#[inline(always)]
+pub(crate) fn unit(x: u32) -> f32 {
+    (x >> 8) as f32 * (1.0 / 16_777_216.0)
+}
+
+/// Sample number `index` of a pixel, in [0, 1) by [0, 1).
+#[inline(always)]
+pub(crate) fn point(index: u32, scramble: [u32; 2]) -> [f32; 2] {
+    let [x, y] = sobol(index);
+    [unit(x ^ scramble[0]), unit(y ^ scramble[1])]
+}
+
+/// A direction around `normal`, spread by the cosine law, from a point of the unit square.
+#[inline(always)]
+pub(crate) fn cosine_direction<R: Real<Scalar = f32>>(normal: Vec3<R>, u: R, v: R) -> Vec3<R> {
+    let (sin, cos) = (v * std::f32::consts::TAU).sin_cos();
+    let r = u.sqrt();
+    let z = u.one_minus().max(0.0).sqrt();
+    let [a, b] = basis(normal);
+    a * (r * cos) + b * (r * sin) + normal * z
+}
+
+/// Two directions that make an orthonormal basis with a third (Duff et al. 2017).
+#[inline(always)]
+pub(crate) fn basis<R: Real<Scalar = f32>>(n: Vec3<R>) -> [Vec3<R>; 2] {
+    let sign = R::select(n.z.negative(), n.z.lit(-1.0), n.z.lit(1.0));
+    let a = -(sign + n.z).recip();
+    let b = n.x * n.y * a;
+    [v3(n.x.sq() * a * sign + 1.0, sign * b, -(sign * n.x)), v3(b, sign + n.y.sq() * a, -n.y)]
+}
+
+/// Pixels around a sample's own, on each side, that its filter reaches.
+pub(crate) const fn radius(filter: Filter) -> usize {
+    match filter {
+        Filter::Box => 0,
+        Filter::Tent => 1,
+        Filter::Mitchell => 2,
+    }
+}
+
+/// Weight of a sample along one axis, at `x` pixels from a pixel's middle.
+#[inline(always)]
+pub(crate) fn weight<R: Real<Scalar = f32>>(filter: Filter, x: R) -> R {
+    let x = x.abs();
+    let zero = x.lit(0.0);
+    match filter {
+        Filter::Box => R::select(x.above(0.5), zero, x.lit(1.0)),
+        Filter::Tent => x.one_minus().max(0.0),
+        Filter::Mitchell => {
+            // B = C = 1/3: Mitchell and Netravali 1988, equation 8
+            let near = ((x * 7.0 - 12.0) * x.sq() + 16.0 / 3.0) * (1.0 / 6.0);
+            let far = (((x * (-7.0 / 3.0) + 12.0) * x - 20.0) * x + 32.0 / 3.0) * (1.0 / 6.0);
+            R::select(x.below(1.0), near, R::select(x.below(2.0), far, zero))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_are_stratified() {
+        for seed in 0..50 {
+            let scramble = scramble(seed, 3 * seed, 7);
+            for n in [4u32, 16, 64] {
+                for (wide, high) in [(1, n), (n, 1), (n.isqrt(), n.isqrt())] {
+                    let mut taken = vec![false; n as usize];
+                    for i in 0..n {
+                        let [x, y] = point(i, scramble);
+                        let (x, y) = ((x * wide as f32) as u32, (y * high as f32) as u32);
+                        let cell = &mut taken[(y * wide + x) as usize];
+                        assert!(!*cell, "two samples in one of {n} cells");
+                        *cell = true;
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn filters_sum_to_one() {
+        for filter in [Filter::Box, Filter::Tent, Filter::Mitchell] {
+            let reach = radius(filter) as i32;
+            for i in 0..100 {
+                // a sample that is this far from its pixel's middle is seen by all pixels around with weights that sum to 1
+                let x = i as f32 / 100.0 - 0.495;
+                let sum: f32 = (-reach..=reach).map(|k| weight(filter, x - k as f32)).sum();
+                assert!((sum - 1.0).abs() < 1e-5, "{filter:?} at {x}: {sum}");
+                assert_eq!(weight(filter, x + reach as f32 + 1.01), 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn directions_follow_the_cosine_law() {
+        for normal in [v3(0.0, 1.0, 0.0), v3(0.6, 0.0, -0.8), v3(0.0, 0.0, -1.0f32)] {
+            let mut mean = v3(0.0, 0.0, 0.0f32);
+            for i in 0..1024 {
+                let [u, v] = point(i, [1, 2]);
+                let d = cosine_direction(normal, u, v);
+                assert!((d.length() - 1.0).abs() < 1e-5 && d.dot(normal) >= 0.0);
+                mean = mean + d / 1024.0;
+            }
+            // the mean cosine is 2 / 3
+            assert!((mean - normal * (2.0 / 3.0)).length() < 0.01);
+        }
+    }
+}

@@ -1,0 +1,248 @@
+//! The part of a picture that one thread works on at a time, and all the memory that this takes.
+
+use crate::camera::{Linear, Region, View};
+use crate::planes::Planes;
+use crate::simd::{Row, SLACK, Sheet, TILE_RAYS, WordRow, WordSheet};
+use zeroset_field::eval::Workspace;
+use zeroset_field::program::Program;
+use zeroset_scene::render::Evaluations;
+
+/// Pixels of a tile from left to right.
+pub(crate) const WIDTH: usize = 64;
+/// Pixels of a tile from top to bottom.
+pub(crate) const HEIGHT: usize = 32;
+/// What a tile covers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Area {
+    /// Left edge, pixels.
+    pub(crate) x: usize,
+    /// Top edge, pixels.
+    pub(crate) y: usize,
+    /// At most [`WIDTH`].
+    pub(crate) width: usize,
+    /// At most [`HEIGHT`].
+    pub(crate) height: usize,
+}
+
+impl Area {
+    /// Tile number `index` of a picture.
+    pub(crate) fn of(index: usize, [width, height]: [u32; 2]) -> Area {
+        let (width, height) = (width as usize, height as usize);
+        let across = width.div_ceil(WIDTH);
+        let (x, y) = (index % across * WIDTH, index / across * HEIGHT);
+        Area { x, y, width: WIDTH.min(width - x), height: HEIGHT.min(height - y) }
+    }
+
+    /// Tiles of a picture.
+    pub(crate) fn count([width, height]: [u32; 2]) -> usize {
+        (width as usize).div_ceil(WIDTH) * (height as usize).div_ceil(HEIGHT)
+    }
+}
+
+/// What is marched: a field with what its box and the picture say of it.
+pub(crate) struct Solid<'a> {
+    pub(crate) program: &'a Program,
+    pub(crate) region: Region,
+    pub(crate) view: &'a View,
+    /// Evaluations that a ray may take.
+    pub(crate) max_steps: u32,
+}
+
+impl Solid<'_> {
+    /// A value of the field below this is a hit.
+    pub(crate) fn threshold(&self) -> Linear {
+        self.view.threshold
+    }
+}
+
+/// Rays on their way, one a lane.
+pub(crate) struct Rays {
+    /// What differs from ray to ray: direction (pinhole) or origin.
+    pub(crate) ray: [Row; 3],
+    pub(crate) t: Row,
+    pub(crate) z: Row,
+    pub(crate) r: Row,
+    pub(crate) m: Row,
+    /// Behind this there is nothing.
+    pub(crate) end: Row,
+    /// See [`crate::march`].
+    pub(crate) word: WordRow,
+    pub(crate) count: usize,
+}
+
+/// Shadow rays on their way, one a lane.
+pub(crate) struct Beams {
+    pub(crate) origin: [Row; 3],
+    pub(crate) direction: [Row; 3],
+    pub(crate) t: Row,
+    pub(crate) z: Row,
+    pub(crate) r: Row,
+    pub(crate) m: Row,
+    /// What is left of the light (soft shadows) or the value that counts as dark (hard ones).
+    pub(crate) light: Row,
+    pub(crate) end: Row,
+    /// See [`crate::march`]; the hit's number in place of the pixel's.
+    pub(crate) word: WordRow,
+    pub(crate) count: usize,
+}
+
+/// Shadow rays that ended.
+pub(crate) struct Ended {
+    pub(crate) light: Box<Sheet>,
+    pub(crate) word: Box<WordSheet>,
+    pub(crate) count: usize,
+}
+
+/// Where rays ended on a surface, in the order in which they did.
+pub(crate) struct Hits {
+    pub(crate) count: usize,
+    pub(crate) ray: [Box<Sheet>; 3],
+    /// Distance along the ray.
+    pub(crate) t: Box<Sheet>,
+    /// Value of the field when the march ended.
+    pub(crate) f: Box<Sheet>,
+    /// Pixel and side.
+    pub(crate) word: Box<WordSheet>,
+    /// Evaluations of the ray.
+    pub(crate) steps: Box<Sheet>,
+    /// Value of the field at the point.
+    pub(crate) residual: Box<Sheet>,
+    pub(crate) point: [Box<Sheet>; 3],
+    pub(crate) normal: [Box<Sheet>; 3],
+    /// How far secondary rays start from the surface.
+    pub(crate) offset: Box<Sheet>,
+    /// The ball of this radius that touches the place where secondary rays start, on the side of the normal, is empty. Zero
+    /// where none is known.
+    pub(crate) ball: Box<Sheet>,
+    pub(crate) object: Box<Sheet>,
+    pub(crate) first: Box<Sheet>,
+    pub(crate) second: Box<Sheet>,
+    pub(crate) share: Box<Sheet>,
+    /// Ambient visibility.
+    pub(crate) open: Box<Sheet>,
+    /// Mean direction that is not occluded, normalised.
+    pub(crate) bent: [Box<Sheet>; 3],
+    /// Visibility of the light at hand.
+    pub(crate) lit: Box<Sheet>,
+    /// Visibility of all lights.
+    pub(crate) shadow: Box<Sheet>,
+    /// What the lights would be without shadows.
+    pub(crate) shares: Box<Sheet>,
+    /// Light that arrives from lights, by the cosine law.
+    pub(crate) diffuse: [Box<Sheet>; 3],
+    /// Light in the highlight.
+    pub(crate) gloss: [Box<Sheet>; 3],
+    pub(crate) albedo: [Box<Sheet>; 3],
+    pub(crate) colour: [Box<Sheet>; 3],
+}
+
+/// Where rays start and end, and the slope of the field where they start.
+pub(crate) struct Spans {
+    pub(crate) start: Box<Sheet>,
+    pub(crate) end: Box<Sheet>,
+    pub(crate) slope: Box<Sheet>,
+    /// Nothing is nearer than this where rays start; negative where they start inside the solid.
+    pub(crate) radius: Box<Sheet>,
+}
+
+impl Spans {
+    fn new() -> Spans {
+        Spans { start: Sheet::boxed(), end: Sheet::boxed(), slope: Sheet::boxed(), radius: Sheet::boxed() }
+    }
+}
+
+/// All that a thread needs for its tiles. Made once a thread; a tile allocates nothing.
+pub(crate) struct Scratch {
+    pub(crate) work: Workspace,
+    /// Where in its pixel each ray goes through.
+    pub(crate) jitter: [Box<Sheet>; 2],
+    /// The spans of cells, in the end those of pixels.
+    pub(crate) spans: Spans,
+    /// The spans of the cells that are larger by one size.
+    pub(crate) parents: Spans,
+    /// The spans that are being found.
+    pub(crate) next: Spans,
+    pub(crate) rays: Box<Rays>,
+    pub(crate) beams: Box<Beams>,
+    pub(crate) ended: Ended,
+    pub(crate) hits: Hits,
+    /// Evaluations of the rays that hit nothing, by pixel.
+    pub(crate) steps: Box<Sheet>,
+    /// Words of the rays that ran out of steps.
+    pub(crate) exhausted: Vec<u32>,
+    /// Random numbers of the hits.
+    pub(crate) scramble: [Vec<u32>; 2],
+    pub(crate) planes: Planes,
+    pub(crate) counts: Evaluations,
+}
+
+fn sheet3() -> [Box<Sheet>; 3] {
+    [Sheet::boxed(), Sheet::boxed(), Sheet::boxed()]
+}
+
+impl Scratch {
+    pub(crate) fn new(program: &Program) -> Scratch {
+        let row = || *Row::boxed();
+        Scratch {
+            work: Workspace::new(program),
+            jitter: [Sheet::boxed(), Sheet::boxed()],
+            spans: Spans::new(),
+            parents: Spans::new(),
+            next: Spans::new(),
+            rays: Box::new(Rays {
+                ray: [row(), row(), row()],
+                t: row(),
+                z: row(),
+                r: row(),
+                m: row(),
+                end: row(),
+                word: *WordRow::boxed(),
+                count: 0,
+            }),
+            beams: Box::new(Beams {
+                origin: [row(), row(), row()],
+                direction: [row(), row(), row()],
+                t: row(),
+                z: row(),
+                r: row(),
+                m: row(),
+                light: row(),
+                end: row(),
+                word: *WordRow::boxed(),
+                count: 0,
+            }),
+            ended: Ended { light: Sheet::boxed(), word: WordSheet::boxed(), count: 0 },
+            hits: Hits {
+                count: 0,
+                ray: sheet3(),
+                t: Sheet::boxed(),
+                f: Sheet::boxed(),
+                word: WordSheet::boxed(),
+                steps: Sheet::boxed(),
+                residual: Sheet::boxed(),
+                point: sheet3(),
+                normal: sheet3(),
+                offset: Sheet::boxed(),
+                ball: Sheet::boxed(),
+                object: Sheet::boxed(),
+                first: Sheet::boxed(),
+                second: Sheet::boxed(),
+                share: Sheet::boxed(),
+                open: Sheet::boxed(),
+                bent: sheet3(),
+                lit: Sheet::boxed(),
+                shadow: Sheet::boxed(),
+                shares: Sheet::boxed(),
+                diffuse: sheet3(),
+                gloss: sheet3(),
+                albedo: sheet3(),
+                colour: sheet3(),
+            },
+            steps: Sheet::boxed(),
+            exhausted: Vec::with_capacity(WIDTH * HEIGHT),
+            scramble: [vec![0; TILE_RAYS + SLACK], vec![0; TILE_RAYS + SLACK]],
+            planes: Planes::new(),
+            counts: Evaluations::default(),
+        }
+    }
+}
