@@ -1,197 +1,458 @@
-//! A recorded formula, printed as a WGSL function.
-use super::real::*;
-use std::{cell::RefCell, collections::HashMap, ops::*};
+//! The number type whose operations are recorded.
 
-/// A literal needs no recorder, so that `R::constant` needs no context.
-#[derive(Clone, Copy)]
-pub enum Expr<'r> { Lit(f32), Ref(&'r Recorder, u32) }
-#[derive(Clone, Copy)]
-pub enum Cond<'r> { Lit(bool), Ref(&'r Recorder, u32) }
+use super::real::{Ends, MOST_STEPS, Masked, Ops, Real, State, steps};
+use super::record::{Binary, Comparison, Id, Logic, Op, Recorder, Turns, Unary};
+use std::cell::Cell;
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-#[derive(Clone, PartialEq, Eq, Hash, Debug)]
-enum Op { Input(String), Bin(&'static str, u32, u32), Call(&'static str, Vec<u32>), Neg(u32), Cmp(&'static str, u32, u32), Logic(&'static str, u32, u32), Not(u32), Select(u32, u32, u32), Lit(u32), Read(String) }
-enum Stmt { Let(u32), Var(u32, u32), Set(u32, u32), For { counter: u32, limit: String, needs: Option<u32> }, BreakUnless(u32), Text(String), End }
-#[derive(Default)]
-struct Inner { ops: Vec<Op>, body: Vec<Stmt>, seen: Vec<HashMap<Op, u32>> }
-#[derive(Default)]
-pub struct Recorder(RefCell<Inner>);
+/// A number of a recorded formula: a literal, which operations fold, or a value of the record.
+///
+/// Operations whose result is plain (x + 0, x * 1, x * 0) leave no trace: it is what keeps recorded gradients short.
+#[derive(Clone, Copy, Debug)]
+pub struct Expr<'r>(Number<'r>);
 
-impl Recorder {
-    pub fn new() -> Self { let r = Recorder::default(); r.0.borrow_mut().seen.push(HashMap::new()); r }
-    fn add(&self, op: Op) -> u32 {
-        let mut n = self.0.borrow_mut();
-        if let Some(&i) = n.seen.iter().find_map(|s| s.get(&op)) { return i; }
-        let i = n.ops.len() as u32;
-        n.ops.push(op.clone());
-        n.seen.last_mut().unwrap().insert(op.clone(), i);
-        if !matches!(op, Op::Input(_) | Op::Lit(_)) { n.body.push(Stmt::Let(i)); }
-        i
-    }
-    fn var(&self, init: u32) -> u32 { let mut n = self.0.borrow_mut(); let i = n.ops.len() as u32; n.ops.push(Op::Input(format!("s{i}"))); n.body.push(Stmt::Var(i, init)); i }
-    fn push(&self, s: Stmt) { self.0.borrow_mut().body.push(s); }
-    fn open(&self, limit: String, needs: Option<u32>) -> u32 {
-        let mut n = self.0.borrow_mut(); let i = n.ops.len() as u32; n.ops.push(Op::Input(format!("i{i}")));
-        n.body.push(Stmt::For { counter: i, limit, needs }); n.seen.push(HashMap::new()); i
-    }
-    fn close(&self) { let mut n = self.0.borrow_mut(); n.body.push(Stmt::End); n.seen.pop(); }
-    pub fn input(&self, name: &str) -> Expr<'_> { Expr::Ref(self, self.add(Op::Input(name.into()))) }
-    /// Parameter `i` of this instruction.
-    pub fn param(&self, i: u32) -> Expr<'_> { Expr::Ref(self, self.add(Op::Read(format!("params[at + {i}u]")))) }
-    pub fn function(&self, name: &str, results: &[Expr<'_>]) -> String {
-        let ids: Vec<u32> = results.iter().map(|e| e.id(self)).collect();
-        let n = self.0.borrow();
-        // what is used, backwards from the results (loops are kept whole)
-        let mut used = vec![false; n.ops.len()];
-        for &i in &ids { used[i as usize] = true; }
-        for s in n.body.iter().rev() {
-            match s {
-                Stmt::Let(i) if used[*i as usize] => for a in args(&n.ops[*i as usize]) { used[a as usize] = true; },
-                Stmt::Var(_, a) | Stmt::BreakUnless(a) => used[*a as usize] = true,
-                Stmt::Set(_, a) => used[*a as usize] = true,
-                Stmt::For { needs: Some(a), .. } => used[*a as usize] = true,
-                _ => {}
-            }
-        }
-        let mut out = format!("fn {name}(p: vec3f, at: u32) -> {} {{\n", if ids.len() == 1 { "f32" } else { "vec4f" });
-        let mut pad = 1;
-        for s in &n.body {
-            let line = match s {
-                Stmt::Let(i) => { if !used[*i as usize] { continue; } format!("let v{i} = {};", print(&n.ops, &n.ops[*i as usize])) }
-                Stmt::Var(i, a) => format!("var s{i} = {};", name_of(&n.ops, *a)),
-                Stmt::Set(i, a) => format!("s{i} = {};", name_of(&n.ops, *a)),
-                Stmt::For { counter, limit, .. } => format!("for (var i{counter} = 0u; i{counter} < {limit}; i{counter}++) {{"),
-                Stmt::BreakUnless(c) => format!("if (!{}) {{ break; }}", name_of(&n.ops, *c)),
-                Stmt::Text(t) => t.clone(),
-                Stmt::End => { pad -= 1; "}".into() }
-            };
-            out += &format!("{}{line}\n", "    ".repeat(pad));
-            if matches!(s, Stmt::For { .. }) { pad += 1; }
-        }
-        let r: Vec<String> = ids.iter().map(|&i| name_of(&n.ops, i)).collect();
-        out + &if r.len() == 1 { format!("    return {};\n}}\n", r[0]) } else { format!("    return vec4f({});\n}}\n", r.join(", ")) }
-    }
+#[derive(Clone, Copy, Debug)]
+enum Number<'r> {
+    /// A literal knows the recorder of the number that it was made beside, if any.
+    Literal(f32, Option<&'r Recorder>),
+    Value(&'r Recorder, Id),
 }
-fn args(o: &Op) -> Vec<u32> { match o {
-    Op::Input(_) | Op::Lit(_) | Op::Read(_) => vec![], Op::Bin(_, a, b) | Op::Cmp(_, a, b) | Op::Logic(_, a, b) => vec![*a, *b],
-    Op::Call(_, v) => v.clone(), Op::Neg(a) | Op::Not(a) => vec![*a], Op::Select(a, b, c) => vec![*a, *b, *c] } }
-fn name_of(ops: &[Op], i: u32) -> String { match &ops[i as usize] {
-    Op::Input(s) => s.clone(),
-    Op::Lit(b) => { let x = f32::from_bits(*b); if x.is_sign_negative() { format!("({x:?}f)") } else { format!("{x:?}f") } }
-    _ => format!("v{i}") } }
-fn print(ops: &[Op], o: &Op) -> String {
-    let n = |i: &u32| name_of(ops, *i);
-    match o {
-        Op::Input(s) | Op::Read(s) => s.clone(),
-        Op::Lit(_) => unreachable!(),
-        Op::Bin(s, a, b) | Op::Cmp(s, a, b) | Op::Logic(s, a, b) => format!("{} {s} {}", n(a), n(b)),
-        Op::Call(f, v) => format!("{f}({})", v.iter().map(n).collect::<Vec<_>>().join(", ")),
-        Op::Neg(a) => format!("-{}", n(a)), Op::Not(a) => format!("!{}", n(a)),
-        Op::Select(m, a, b) => format!("select({}, {}, {})", n(b), n(a), n(m)),
-    }
+
+/// A condition of a recorded formula.
+#[derive(Clone, Copy, Debug)]
+pub struct Condition<'r>(Truth<'r>);
+
+#[derive(Clone, Copy, Debug)]
+enum Truth<'r> {
+    Literal(bool),
+    Value(&'r Recorder, Id),
 }
 
 impl<'r> Expr<'r> {
-    fn id(self, r: &Recorder) -> u32 { match self { Expr::Lit(c) => r.add(Op::Lit(c.to_bits())), Expr::Ref(_, i) => i } }
-    fn one(self, k: impl Fn(f32) -> f32, op: impl Fn(u32) -> Op) -> Self { match self { Expr::Lit(c) => Expr::Lit(k(c)), Expr::Ref(r, i) => Expr::Ref(r, r.add(op(i))) } }
-    fn two(self, o: Self, k: impl Fn(f32, f32) -> f32, op: impl Fn(u32, u32) -> Op) -> Self {
-        match (self, o) { (Expr::Lit(a), Expr::Lit(b)) => Expr::Lit(k(a, b)), (Expr::Ref(r, _), _) | (_, Expr::Ref(r, _)) => Expr::Ref(r, r.add(op(self.id(r), o.id(r)))) }
+    /// A value of the record.
+    pub(super) fn value(recorder: &'r Recorder, id: Id) -> Self {
+        Expr(Number::Value(recorder, id))
     }
-    fn cmp(self, o: Self, k: impl Fn(f32, f32) -> bool, op: &'static str) -> Cond<'r> {
-        match (self, o) { (Expr::Lit(a), Expr::Lit(b)) => Cond::Lit(k(a, b)), (Expr::Ref(r, _), _) | (_, Expr::Ref(r, _)) => Cond::Ref(r, r.add(Op::Cmp(op, self.id(r), o.id(r)))) }
+
+    fn literal(c: f32, recorder: Option<&'r Recorder>) -> Self {
+        Expr(Number::Literal(c, recorder))
     }
-    fn call1(self, k: impl Fn(f32) -> f32, f: &'static str) -> Self { self.one(k, |a| Op::Call(f, vec![a])) }
-    fn is(self, c: f32) -> bool { matches!(self, Expr::Lit(x) if x == c) }
-    fn rec(self) -> Option<&'r Recorder> { match self { Expr::Ref(r, _) => Some(r), _ => None } }
+
+    /// Its place in the record.
+    pub(super) fn id(self, recorder: &Recorder) -> Id {
+        match self.0 {
+            Number::Literal(c, _) => recorder.add(Op::Literal(c.to_bits())),
+            Number::Value(own, id) => {
+                debug_assert!(std::ptr::eq(own, recorder), "two recorders in one formula");
+                id
+            }
+        }
+    }
+
+    fn recorder(self) -> Option<&'r Recorder> {
+        match self.0 {
+            Number::Literal(_, recorder) => recorder,
+            Number::Value(recorder, _) => Some(recorder),
+        }
+    }
+
+    fn is(self, c: f32) -> bool {
+        matches!(self.0, Number::Literal(x, _) if x == c)
+    }
+
+    fn unary(self, f: Unary) -> Self {
+        match self.0 {
+            Number::Literal(c, r) => Expr::literal(fold_unary(f, c), r),
+            Number::Value(r, id) => Expr::value(r, r.add(Op::Unary(f, id))),
+        }
+    }
+
+    fn binary(self, f: Binary, o: Self) -> Self {
+        match (self.0, o.0) {
+            (Number::Literal(a, r), Number::Literal(b, s)) => {
+                Expr::literal(fold_binary(f, a, b), r.or(s))
+            }
+            (Number::Value(r, _), _) | (_, Number::Value(r, _)) => {
+                Expr::value(r, r.add(Op::Binary(f, self.id(r), o.id(r))))
+            }
+        }
+    }
+
+    fn compare(self, f: Comparison, o: Self) -> Condition<'r> {
+        Condition(match (self.0, o.0) {
+            (Number::Literal(a, _), Number::Literal(b, _)) => Truth::Literal(match f {
+                Comparison::Below => a < b,
+                Comparison::Above => a > b,
+            }),
+            (Number::Value(r, _), _) | (_, Number::Value(r, _)) => {
+                Truth::Value(r, r.add(Op::Compare(f, self.id(r), o.id(r))))
+            }
+        })
+    }
 }
-impl From<f32> for Expr<'_> { fn from(c: f32) -> Self { Expr::Lit(c) } }
-macro_rules! bin { ($t:ident $f:ident $s:literal, |$a:ident, $b:ident| $fold:expr) => {
-    impl $t for Expr<'_> { type Output = Self; fn $f(self, o: Self) -> Self {
-        let ($a, $b) = (self, o);
-        if let Some(e) = $fold { return e; }
-        self.two(o, |a, b| $t::$f(a, b), |a, b| Op::Bin($s, a, b)) } }
-    impl $t<f32> for Expr<'_> { type Output = Self; fn $f(self, o: f32) -> Self { $t::$f(self, Expr::Lit(o)) } }
-}; }
-// x * 0 = 0 and x * 1 = x: what makes a recorded gradient short
-bin!(Add add "+", |a, b| if a.is(0.0) { Some(b) } else if b.is(0.0) { Some(a) } else { None });
-bin!(Sub sub "-", |a, b| if b.is(0.0) { Some(a) } else if a.is(0.0) { Some(-b) } else { None });
-bin!(Mul mul "*", |a, b| if a.is(0.0) || b.is(0.0) { Some(Expr::Lit(0.0)) } else if a.is(1.0) { Some(b) } else if b.is(1.0) { Some(a) } else { None });
-bin!(Div div "/", |a, b| if b.is(1.0) || a.is(0.0) { Some(a) } else { None });
-impl Neg for Expr<'_> { type Output = Self; fn neg(self) -> Self { self.one(|a| -a, Op::Neg) } }
-impl<'r> BitAnd for Cond<'r> { type Output = Self; fn bitand(self, o: Self) -> Self { match (self, o) { (Cond::Lit(a), x) | (x, Cond::Lit(a)) => if a { x } else { Cond::Lit(false) }, (Cond::Ref(r, a), Cond::Ref(_, b)) => Cond::Ref(r, r.add(Op::Logic("&", a, b))) } } }
-impl<'r> BitOr for Cond<'r> { type Output = Self; fn bitor(self, o: Self) -> Self { match (self, o) { (Cond::Lit(a), x) | (x, Cond::Lit(a)) => if a { Cond::Lit(true) } else { x }, (Cond::Ref(r, a), Cond::Ref(_, b)) => Cond::Ref(r, r.add(Op::Logic("|", a, b))) } } }
-impl<'r> Not for Cond<'r> { type Output = Self; fn not(self) -> Self { match self { Cond::Lit(a) => Cond::Lit(!a), Cond::Ref(r, a) => Cond::Ref(r, r.add(Op::Not(a))) } } }
-impl<'r> Masked for Expr<'r> { type Mask = Cond<'r>; }
-macro_rules! ops { ($($t:ty),*) => {$( impl<'r> Ops<$t> for Expr<'r> {
-    fn min(self, o: $t) -> Self { self.two(o.into(), f32::min, |a, b| Op::Call("min", vec![a, b])) }
-    fn max(self, o: $t) -> Self { self.two(o.into(), f32::max, |a, b| Op::Call("max", vec![a, b])) }
-    fn below(self, o: $t) -> Cond<'r> { self.cmp(o.into(), |a, b| a < b, "<") }
-    fn above(self, o: $t) -> Cond<'r> { self.cmp(o.into(), |a, b| a > b, ">") }
-} )*}; }
+
+fn fold_unary(f: Unary, x: f32) -> f32 {
+    match f {
+        Unary::Neg => -x,
+        Unary::Abs => x.abs(),
+        Unary::Sqrt => x.sqrt(),
+        Unary::Floor => x.floor(),
+        Unary::Sin => x.sin(),
+        Unary::Cos => x.cos(),
+        Unary::Exp => x.exp(),
+        Unary::Exp2 => x.exp2(),
+        Unary::Ln => x.ln(),
+    }
+}
+
+fn fold_binary(f: Binary, x: f32, y: f32) -> f32 {
+    match f {
+        Binary::Add => x + y,
+        Binary::Sub => x - y,
+        Binary::Mul => x * y,
+        Binary::Div => x / y,
+        Binary::Min => Ops::min(x, y),
+        Binary::Max => Ops::max(x, y),
+        Binary::Atan2 => x.atan2(y),
+        Binary::Pow => Real::powf(x, y),
+    }
+}
+
+impl From<f32> for Expr<'_> {
+    fn from(c: f32) -> Self {
+        Expr::literal(c, None)
+    }
+}
+
+impl Neg for Expr<'_> {
+    type Output = Self;
+    fn neg(self) -> Self {
+        if let Number::Value(r, id) = self.0
+            && let Some(a) = r.negated(id)
+        {
+            return Expr::value(r, a);
+        }
+        self.unary(Unary::Neg)
+    }
+}
+
+impl Add for Expr<'_> {
+    type Output = Self;
+    fn add(self, o: Self) -> Self {
+        if self.is(0.0) {
+            o
+        } else if o.is(0.0) {
+            self
+        } else {
+            self.binary(Binary::Add, o)
+        }
+    }
+}
+
+impl Sub for Expr<'_> {
+    type Output = Self;
+    fn sub(self, o: Self) -> Self {
+        if o.is(0.0) {
+            self
+        } else if self.is(0.0) {
+            -o
+        } else {
+            self.binary(Binary::Sub, o)
+        }
+    }
+}
+
+impl Mul for Expr<'_> {
+    type Output = Self;
+    fn mul(self, o: Self) -> Self {
+        if self.is(0.0) || o.is(0.0) {
+            Expr::literal(0.0, self.recorder().or(o.recorder()))
+        } else if self.is(1.0) {
+            o
+        } else if o.is(1.0) {
+            self
+        } else {
+            self.binary(Binary::Mul, o)
+        }
+    }
+}
+
+impl Div for Expr<'_> {
+    type Output = Self;
+    fn div(self, o: Self) -> Self {
+        if o.is(1.0) || (self.is(0.0) && !o.is(0.0)) {
+            self
+        } else {
+            self.binary(Binary::Div, o)
+        }
+    }
+}
+
+macro_rules! literal_arithmetic {
+    ($($t:ident $f:ident),*) => {$(
+        impl $t<f32> for Expr<'_> {
+            type Output = Self;
+            fn $f(self, o: f32) -> Self {
+                $t::$f(self, Expr::from(o))
+            }
+        }
+    )*};
+}
+literal_arithmetic!(Add add, Sub sub, Mul mul, Div div);
+
+impl<'r> Condition<'r> {
+    fn logic(self, f: Logic, o: Self) -> Self {
+        Condition(match (self.0, o.0) {
+            (Truth::Literal(a), other) | (other, Truth::Literal(a)) => match (f, a) {
+                (Logic::And, true) | (Logic::Or, false) => other,
+                (Logic::And, false) | (Logic::Or, true) => Truth::Literal(a),
+            },
+            (Truth::Value(r, a), Truth::Value(_, b)) => Truth::Value(r, r.add(Op::Logic(f, a, b))),
+        })
+    }
+}
+
+impl BitAnd for Condition<'_> {
+    type Output = Self;
+    fn bitand(self, o: Self) -> Self {
+        self.logic(Logic::And, o)
+    }
+}
+
+impl BitOr for Condition<'_> {
+    type Output = Self;
+    fn bitor(self, o: Self) -> Self {
+        self.logic(Logic::Or, o)
+    }
+}
+
+impl Not for Condition<'_> {
+    type Output = Self;
+    fn not(self) -> Self {
+        Condition(match self.0 {
+            Truth::Literal(a) => Truth::Literal(!a),
+            Truth::Value(r, a) => Truth::Value(r, r.add(Op::Not(a))),
+        })
+    }
+}
+
+impl<'r> Masked for Expr<'r> {
+    type Mask = Condition<'r>;
+}
+
+macro_rules! ops {
+    ($($rhs:ty),*) => {$(
+        impl<'r> Ops<$rhs> for Expr<'r> {
+            fn min(self, o: $rhs) -> Self {
+                self.binary(Binary::Min, o.into())
+            }
+            fn max(self, o: $rhs) -> Self {
+                self.binary(Binary::Max, o.into())
+            }
+            fn below(self, o: $rhs) -> Condition<'r> {
+                self.compare(Comparison::Below, o.into())
+            }
+            fn above(self, o: $rhs) -> Condition<'r> {
+                self.compare(Comparison::Above, o.into())
+            }
+        }
+    )*};
+}
 ops!(Expr<'r>, f32);
-impl<'r> State<Expr<'r>> for Expr<'r> { fn zip(self, o: Self, f: impl Fn(Self, Self) -> Self + Copy) -> Self { f(self, o) } }
+
+impl<'r> State<Expr<'r>> for Expr<'r> {
+    fn zip(self, o: Self, f: impl Fn(Self, Self) -> Self + Copy) -> Self {
+        f(self, o)
+    }
+}
 
 impl<'r> Real for Expr<'r> {
     type Base = Self;
     type Scalar = Self;
     type Store = &'r Recorder;
-    fn param(r: &&'r Recorder, at: usize) -> Self { r.param(at as u32) }
-    fn constant(c: f64) -> Self { Expr::Lit(c as f32) }
-    fn like(self, s: Self) -> Self { s }
-    fn lit(self, c: f32) -> Self { Expr::Lit(c) }
-    fn select(m: Cond<'r>, a: Self, b: Self) -> Self {
-        match m { Cond::Lit(true) => a, Cond::Lit(false) => b,
-            Cond::Ref(r, m) => { let (a, b) = (a.id(r), b.id(r)); if a == b { Expr::Ref(r, a) } else { Expr::Ref(r, r.add(Op::Select(m, a, b))) } } }
+
+    fn param(store: &&'r Recorder, at: usize) -> Self {
+        store.param(at as u32)
     }
-    fn sqrt(self) -> Self { self.call1(f32::sqrt, "sqrt") }
-    fn abs(self) -> Self { self.call1(f32::abs, "abs") }
-    fn floor(self) -> Self { self.call1(f32::floor, "floor") }
-    fn exp(self) -> Self { self.call1(f32::exp, "exp") }
-    fn ln(self) -> Self { self.call1(f32::ln, "log") }
-    fn sin_cos(self) -> (Self, Self) { (self.call1(f32::sin, "sin"), self.call1(f32::cos, "cos")) }
-    fn atan2(self, x: Self) -> Self { self.two(x, f32::atan2, |a, b| Op::Call("atan2", vec![a, b])) }
-    fn powf(self, k: Self) -> Self { self.two(k, f32::powf, |a, b| Op::Call("pow", vec![a, b])) }
+    fn constant(c: f64) -> Self {
+        Expr::from(c as f32)
+    }
+    fn like(self, s: Self) -> Self {
+        s
+    }
+    fn lit(self, c: f32) -> Self {
+        Expr::literal(c, self.recorder())
+    }
+    fn select(m: Condition<'r>, yes: Self, no: Self) -> Self {
+        match m.0 {
+            Truth::Literal(true) => yes,
+            Truth::Literal(false) => no,
+            Truth::Value(r, m) => {
+                let (yes, no) = (yes.id(r), no.id(r));
+                if yes == no {
+                    Expr::value(r, yes)
+                } else {
+                    Expr::value(r, r.add(Op::Select(m, yes, no)))
+                }
+            }
+        }
+    }
+    fn sqrt(self) -> Self {
+        self.unary(Unary::Sqrt)
+    }
+    fn abs(self) -> Self {
+        self.unary(Unary::Abs)
+    }
+    fn floor(self) -> Self {
+        self.unary(Unary::Floor)
+    }
+    fn sin_cos(self) -> (Self, Self) {
+        (self.unary(Unary::Sin), self.unary(Unary::Cos))
+    }
+    fn exp(self) -> Self {
+        self.unary(Unary::Exp)
+    }
+    fn exp2(self) -> Self {
+        self.unary(Unary::Exp2)
+    }
+    fn ln(self) -> Self {
+        self.unary(Unary::Ln)
+    }
+    fn atan2(self, x: Self) -> Self {
+        self.binary(Binary::Atan2, x)
+    }
+    fn powf(self, k: Self) -> Self {
+        self.binary(Binary::Pow, k)
+    }
     fn norm<const N: usize>(v: [Self; N]) -> Self {
-        let Some(r) = v.iter().find_map(|e| e.rec()) else { let mut s = 0.0; for e in v { if let Expr::Lit(c) = e { s += c * c; } } return Expr::Lit(s.sqrt()) };
-        let ids: Vec<u32> = v.iter().map(|e| e.id(r)).collect();
-        let ctor = r.add(Op::Call(match N { 2 => "vec2f", 3 => "vec3f", _ => "vec4f" }, ids));
-        Expr::Ref(r, r.add(Op::Call("length", vec![ctor])))
+        let Some(r) = v.iter().find_map(|e| match e.0 {
+            Number::Value(r, _) => Some(r),
+            Number::Literal(..) => None,
+        }) else {
+            return v.iter().fold(Expr::from(0.0), |s, e| s + *e * *e).sqrt();
+        };
+        // zeros (of flattened shapes) do not make it longer; languages have vectors of up to four components
+        let mut rest: Vec<Self> = v.into_iter().filter(|e| !e.is(0.0)).collect();
+        while rest.len() > 4 {
+            let tail = rest.split_off(rest.len() - 4);
+            rest.push(length(r, &tail));
+        }
+        length(r, &rest)
     }
-    fn repeat_while<T: State<Self>>(limit: Self, init: T, live: impl Fn(T) -> Cond<'r>, step: impl Fn(T) -> T) -> T {
-        let rec = std::cell::Cell::new(limit.rec());
-        init.zip(init, |a: Expr<'r>, b| { rec.set(rec.get().or(a.rec())); b });
-        let r = rec.get().expect("a loop over nothing but literals");
-        let vars = init.zip(init, |a: Expr<'r>, _| Expr::Ref(r, r.var(a.id(r))));
-        let l = match limit { Expr::Lit(c) => format!("{}u", c as u32), Expr::Ref(_, i) => { let n = r.0.borrow(); format!("u32({})", name_of(&n.ops, i)) } };
-        r.open(l, match limit { Expr::Ref(_, i) => Some(i), _ => None });
-        if let Cond::Ref(_, c) = live(vars) { r.push(Stmt::BreakUnless(c)); }
-        let next = step(vars);
-        // every new value is a `let` (or a variable not yet assigned), so assigning in order is safe unless a variable is copied
-        let next = next.zip(next, |a: Expr<'r>, _| Expr::Ref(r, r.copy_if_var(a.id(r))));
-        vars.zip(next, |v: Expr<'r>, n: Expr<'r>| { r.push(Stmt::Set(v.id(r), n.id(r))); v });
-        r.close();
-        // the variables as they are after the loop, frozen
-        vars.zip(vars, |v: Expr<'r>, _| Expr::Ref(r, r.freeze(v.id(r))))
+
+    fn repeat_while<T: State<Self>>(
+        limit: Self,
+        init: T,
+        live: impl Fn(T) -> Condition<'r>,
+        step: impl Fn(T) -> T,
+    ) -> T {
+        let turns = match limit.0 {
+            Number::Literal(c, _) => Turns::Fixed(steps(c.into())),
+            Number::Value(_, id) => Turns::Number(id),
+        };
+        if let Some(r) = limit.recorder().or(recorder_of(init)) {
+            return record_loop(r, turns, init, live, step);
+        }
+        // nothing but literals so far: the loop runs here until a value of a record shows up
+        let (mut state, mut left) = (init, steps_of(&turns));
+        while left > 0 {
+            match live(state).0 {
+                Truth::Literal(true) => state = step(state),
+                Truth::Literal(false) => return state,
+                Truth::Value(r, _) => return record_loop(r, Turns::Fixed(left), state, live, step),
+            }
+            left -= 1;
+            if let Some(r) = recorder_of(state) {
+                return record_loop(r, Turns::Fixed(left), state, live, step);
+            }
+        }
+        state
     }
-    fn fold<const W: usize, T: State<Self>>(store: &&'r Recorder, at: usize, ends: Ends, init: T, step: impl Fn(T, [Self; W], [Self; W]) -> T) -> T {
+
+    fn fold<const W: usize, T: State<Self>>(
+        store: &&'r Recorder,
+        at: usize,
+        ends: Ends,
+        init: T,
+        step: impl Fn(T, [Self; W], [Self; W]) -> T,
+    ) -> T {
         let r = *store;
-        let (n, first) = (format!("u32(params[at + {at}u])"), format!("at + {}u", at + 1));
-        let vars = init.zip(init, |a: Expr<'r>, _| Expr::Ref(r, r.var(a.id(r))));
-        let i = r.open(if ends == Ends::Ring { n.clone() } else { format!("max({n}, 1u) - 1u") }, None);
-        r.push(Stmt::Text(format!("let a{i} = {first} + i{i} * {W}u;")));
-        r.push(Stmt::Text(format!("let b{i} = {first} + ((i{i} + 1u) % {n}) * {W}u;")));
-        let item = |c: &str| std::array::from_fn(|k| Expr::Ref(r, r.add(Op::Read(format!("params[{c}{i} + {k}u]")))));
-        let next = step(vars, item("a"), item("b"));
-        let next = next.zip(next, |a: Expr<'r>, _| Expr::Ref(r, r.copy_if_var(a.id(r))));
-        vars.zip(next, |v: Expr<'r>, n: Expr<'r>| { r.push(Stmt::Set(v.id(r), n.id(r))); v });
-        r.close();
-        vars.zip(vars, |v: Expr<'r>, _| Expr::Ref(r, r.freeze(v.id(r))))
+        let of = r.open(Turns::Items {
+            at: at as u32,
+            width: W as u32,
+            ends,
+        });
+        let states = init.zip(init, |a: Self, _| Expr::value(r, r.state(of, a.id(r))));
+        let item = |next: bool| {
+            std::array::from_fn(|k| {
+                let component = k as u32;
+                Expr::value(r, r.add(Op::Item { of, next, component }))
+            })
+        };
+        let next = step(states, item(false), item(true));
+        finish_loop(r, states, next);
+        r.close(of);
+        states
     }
 }
-impl Recorder {
-    /// A loop's new value that is itself a loop variable must be read before the variables are written.
-    fn copy_if_var(&self, i: u32) -> u32 { if matches!(self.0.borrow().ops[i as usize], Op::Input(_)) { self.freeze(i) } else { i } }
-    fn freeze(&self, i: u32) -> u32 {
-        let mut n = self.0.borrow_mut(); let name = name_of(&n.ops, i); let k = n.ops.len() as u32;
-        n.ops.push(Op::Read(name)); n.body.push(Stmt::Let(k)); k
+
+/// Length of one to four components.
+fn length<'r>(r: &'r Recorder, v: &[Expr<'r>]) -> Expr<'r> {
+    match v {
+        [] => Expr::literal(0.0, Some(r)),
+        [x] => x.abs(),
+        _ => {
+            let ids = v.iter().map(|e| e.id(r)).collect();
+            Expr::value(r, r.add(Op::Length(ids)))
+        }
     }
+}
+
+fn steps_of(turns: &Turns) -> u32 {
+    match turns {
+        Turns::Fixed(n) => *n,
+        Turns::Number(_) | Turns::Items { .. } => MOST_STEPS,
+    }
+}
+
+/// The recorder that one of a loop's numbers belongs to.
+fn recorder_of<'r, T: State<Expr<'r>>>(state: T) -> Option<&'r Recorder> {
+    let found = Cell::new(None);
+    state.zip(state, |a, _| {
+        found.set(found.get().or(a.recorder()));
+        a
+    });
+    found.get()
+}
+
+fn record_loop<'r, T: State<Expr<'r>>>(
+    r: &'r Recorder,
+    turns: Turns,
+    init: T,
+    live: impl Fn(T) -> Condition<'r>,
+    step: impl Fn(T) -> T,
+) -> T {
+    if matches!(turns, Turns::Fixed(0)) {
+        return init;
+    }
+    let of = r.open(turns);
+    let states = init.zip(init, |a, _| Expr::value(r, r.state(of, a.id(r))));
+    match live(states).0 {
+        Truth::Literal(true) => {}
+        Truth::Literal(false) => {
+            r.abandon();
+            return init;
+        }
+        Truth::Value(_, condition) => r.break_unless(of, condition),
+    }
+    finish_loop(r, states, step(states));
+    r.close(of);
+    states
+}
+
+fn finish_loop<'r, T: State<Expr<'r>>>(r: &'r Recorder, states: T, next: T) {
+    states.zip(next, |state, next| {
+        r.set_next(state.id(r), next.id(r));
+        state
+    });
 }

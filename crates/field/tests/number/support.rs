@@ -4,7 +4,7 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use zeroset_field::number::{Args, Dual, F64, Lanes, Real, Vec3, v3};
 
 /// A formula, written once.
-pub trait Formula {
+pub(crate) trait Formula {
     /// The formula at `p`.
     fn eval<R: Real>(p: Vec3<R>, a: Args<'_, R>) -> R;
 }
@@ -13,7 +13,7 @@ pub trait Formula {
 #[macro_export]
 macro_rules! formulas {
     ($($name:ident |$p:ident, $a:ident| $body:expr;)*) => {$(
-        pub struct $name;
+        pub(crate) struct $name;
         impl $crate::support::Formula for $name {
             #[inline(always)]
             fn eval<R: zeroset_field::number::Real>(
@@ -28,7 +28,7 @@ macro_rules! formulas {
 }
 
 /// Every SIMD level of this machine, the best first.
-pub fn levels() -> Vec<(&'static str, Level)> {
+pub(crate) fn levels() -> Vec<(&'static str, Level)> {
     let best = Level::new();
     let mut levels = Vec::new();
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -50,7 +50,7 @@ pub fn levels() -> Vec<(&'static str, Level)> {
 }
 
 /// The formula at every point, by lanes.
-pub fn lanes<F: Formula>(level: Level, params: &[f32], points: &[[f32; 3]]) -> Vec<f32> {
+pub(crate) fn lanes<F: Formula>(level: Level, params: &[f32], points: &[[f32; 3]]) -> Vec<f32> {
     duals::<F>(level, params, points, false)
         .into_iter()
         .map(|[v, ..]| v)
@@ -58,7 +58,7 @@ pub fn lanes<F: Formula>(level: Level, params: &[f32], points: &[[f32; 3]]) -> V
 }
 
 /// Value and gradient of the formula at every point, by lanes.
-pub fn dual_lanes<F: Formula>(level: Level, params: &[f32], points: &[[f32; 3]]) -> Vec<[f32; 4]> {
+pub(crate) fn dual_lanes<F: Formula>(level: Level, params: &[f32], points: &[[f32; 3]]) -> Vec<[f32; 4]> {
     duals::<F>(level, params, points, true)
 }
 
@@ -99,17 +99,17 @@ fn duals<F: Formula>(
 }
 
 /// The formula at a point in `f64`.
-pub fn reference<F: Formula>(params: &[f32], p: [f64; 3]) -> f64 {
+pub(crate) fn reference<F: Formula>(params: &[f32], p: [f64; 3]) -> f64 {
     F::eval(p3(p), Args::new(params)).0
 }
 
 /// A point of reference numbers.
-pub fn p3([x, y, z]: [f64; 3]) -> Vec3<F64> {
+pub(crate) fn p3([x, y, z]: [f64; 3]) -> Vec3<F64> {
     v3(F64(x), F64(y), F64(z))
 }
 
 /// Distance between neighbouring `f32` at `x`.
-pub fn ulp(x: f64) -> f64 {
+pub(crate) fn ulp(x: f64) -> f64 {
     let a = (x.abs() as f32).min(f32::MAX);
     if a == f32::MAX {
         f64::from(a) - f64::from(a.next_down())
@@ -119,7 +119,7 @@ pub fn ulp(x: f64) -> f64 {
 }
 
 /// Numbers with every exponent and sign, `each` of them for each, with zeros, infinities and the ends of the range.
-pub fn every_exponent(each: u32) -> Vec<f32> {
+pub(crate) fn every_exponent(each: u32) -> Vec<f32> {
     let mut out = vec![
         0.0,
         -0.0,

@@ -5,7 +5,7 @@ use zeroset_field::number::{F64, Interval, MOST_STEPS, Real, Vec3, v2, v3};
 
 /// A formula as data.
 #[derive(Clone, Debug)]
-pub enum Tree {
+pub(crate) enum Tree {
     X,
     Y,
     Z,
@@ -23,7 +23,7 @@ pub enum Tree {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub enum Unary {
+pub(crate) enum Unary {
     Neg,
     Abs,
     Sqrt,
@@ -69,7 +69,7 @@ const UNARY: [Unary; 20] = [
 ];
 
 #[derive(Clone, Copy, Debug)]
-pub enum Binary {
+pub(crate) enum Binary {
     Add,
     Sub,
     Mul,
@@ -104,7 +104,7 @@ fn binary() -> impl Strategy<Value = Binary> {
 }
 
 /// A number that something may go wrong with.
-pub fn number() -> impl Strategy<Value = f32> {
+pub(crate) fn number() -> impl Strategy<Value = f32> {
     prop_oneof![
         4 => -4.0_f32..4.0,
         2 => prop::sample::select(vec![
@@ -117,7 +117,7 @@ pub fn number() -> impl Strategy<Value = f32> {
 }
 
 /// A random formula.
-pub fn tree() -> impl Strategy<Value = Tree> {
+pub(crate) fn tree() -> impl Strategy<Value = Tree> {
     let leaf = prop_oneof![
         4 => prop::sample::select(vec![0, 1, 2]).prop_map(|k| match k {
             0 => Tree::X,
@@ -141,7 +141,7 @@ pub fn tree() -> impl Strategy<Value = Tree> {
 
 impl Tree {
     /// The formula at `p`; `seen` is told of every value on the way.
-    pub fn eval<R: Real>(&self, p: Vec3<R>, seen: &mut impl FnMut(R)) -> R {
+    pub(crate) fn eval<R: Real>(&self, p: Vec3<R>, seen: &mut impl FnMut(R)) -> R {
         let v = match self {
             Tree::X => p.x,
             Tree::Y => p.y,
@@ -174,7 +174,7 @@ impl Tree {
     }
 
     /// The value at a point and the largest value on the way, if all are finite.
-    pub fn at(&self, p: [f64; 3]) -> Option<(f64, f64)> {
+    pub(crate) fn at(&self, p: [f64; 3]) -> Option<(f64, f64)> {
         let (mut finite, mut largest) = (true, 0.0_f64);
         let p = v3(F64(p[0]), F64(p[1]), F64(p[2]));
         let v = self.eval(p, &mut |x: F64| {
@@ -229,14 +229,14 @@ fn apply<R: Real>(f: Binary, a: R, b: R) -> R {
 
 /// A box, and places in it.
 #[derive(Clone, Debug)]
-pub struct Place {
+pub(crate) struct Place {
     centre: [f64; 3],
     half: [f64; 3],
     inside: Vec<[f64; 3]>,
 }
 
 /// A box to prove something in: near-equal coordinates, zeros, huge and tiny boxes, single points.
-pub fn place() -> impl Strategy<Value = Place> {
+pub(crate) fn place() -> impl Strategy<Value = Place> {
     let half = || prop::sample::select(vec![0.0, 1e-12, 1e-6, 1e-3, 0.1, 0.5, 1.0, 10.0]);
     let centre = prop_oneof![
         3 => prop::array::uniform3(number()),
@@ -259,14 +259,14 @@ pub fn place() -> impl Strategy<Value = Place> {
 }
 
 impl Place {
-    pub fn intervals(&self) -> Vec3<Interval> {
+    pub(crate) fn intervals(&self) -> Vec3<Interval> {
         let side =
             |k: usize| Interval::new(self.centre[k] - self.half[k], self.centre[k] + self.half[k]);
         v3(side(0), side(1), side(2))
     }
 
     /// Points of the box.
-    pub fn points(&self) -> impl Iterator<Item = [f64; 3]> {
+    pub(crate) fn points(&self) -> impl Iterator<Item = [f64; 3]> {
         let sides = self.intervals().array();
         self.inside.iter().map(move |t| {
             std::array::from_fn(|k| {

@@ -4,7 +4,9 @@ use std::marker::PhantomData;
 
 use fearless_simd::{Level, Simd, prelude::*};
 use zeroset_field::catalogue::{Join, Map, Modify};
-use zeroset_field::number::{Args, Dual, F64, Interval, Lanes, Real, Recorder, Slope, v3};
+use zeroset_field::number::{
+    Args, Argument, Dual, Expr, F64, Interval, Lanes, Real, Recorder, Slope, v3, wgsl,
+};
 
 /// What a formula takes: a field's value, and three numbers, which are a point or the operands of a join.
 pub type Input<T> = [T; 4];
@@ -104,23 +106,29 @@ fn lanes<F: Formula, S: Simd>(s: S, q: &[Input<f32>], a: &[f32]) -> Vec<Output<f
 }
 
 fn shader<F: Formula>() -> String {
-    let names = ["d", "p.x", "p.y", "p.z"];
     let recorder = Recorder::new();
-    let q = names.map(|n| recorder.input(n));
+    let q = ["d", "p.x", "p.y", "p.z"].map(|n| recorder.input(n));
     let [x, y, z] = F::eval(q, Args::new(&&recorder));
-    let value = recorder.function("value", &[x, y, z, x]);
+    let value = print("value", &recorder, &[x, y, z]);
     let recorder = Recorder::new();
     let d = Dual {
         v: recorder.input("d"),
-        d: ["g.x", "g.y", "g.z"].map(|n| recorder.input(n)),
+        d: recorder.point("g").array(),
     };
-    let p = Dual::point(v3(
-        recorder.input("p.x"),
-        recorder.input("p.y"),
-        recorder.input("p.z"),
-    ));
+    let p = Dual::point(recorder.point("p"));
     let [first, ..] = F::eval([d, p.x, p.y, p.z], Args::new(&&recorder));
-    value + &recorder.function("gradient", &[first.d[0], first.d[1], first.d[2], first.v])
+    value + &print("gradient", &recorder, &[first.d[0], first.d[1], first.d[2], first.v])
+}
+
+fn print(name: &str, recorder: &Recorder, results: &[Expr<'_>]) -> String {
+    let arguments = [
+        ("d", Argument::Number),
+        ("g", Argument::Vec3),
+        ("p", Argument::Vec3),
+        ("at", Argument::Offset),
+    ];
+    let function = recorder.function(name, &arguments, results);
+    wgsl::print(&function.unwrap_or_else(|e| panic!("{e}")))
 }
 
 /// Every level of instructions that this machine has.

@@ -109,8 +109,7 @@ impl Common {
 
     /// The recorded formula and gradient are WGSL that naga accepts.
     pub fn prove_shader(&self) -> Result<(), Failure> {
-        let head = "@group(0) @binding(0) var<storage, read> params: array<f32>;\n\
-                    var<private> d: f32;\nvar<private> g: vec3f;\n";
+        let head = "@group(0) @binding(0) var<storage, read> params: array<f32>;\n";
         let source = format!("{head}{}", (self.numbers.shader)());
         let none = Params {
             stored: Vec::new(),

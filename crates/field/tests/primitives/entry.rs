@@ -3,7 +3,9 @@
 use fearless_simd::{Level, Simd, prelude::*};
 use zeroset_field::bounds::{Aabb, Exactness};
 use zeroset_field::catalogue::{Info, Primitive, Roughness};
-use zeroset_field::number::{Args, Dual, F64, Interval, Lanes, Recorder, v3};
+use zeroset_field::number::{
+    Args, Argument, Dual, Expr, F64, Interval, Lanes, Recorder, v3, wgsl,
+};
 
 pub type Point = [f64; 3];
 
@@ -78,25 +80,17 @@ fn lanes<P: Primitive, S: Simd>(s: S, points: &[[f32; 3]], a: &[f32]) -> Vec<f32
 
 fn shader<P: Primitive>() -> String {
     let recorder = Recorder::new();
-    let p = || {
-        v3(
-            recorder.input("p.x"),
-            recorder.input("p.y"),
-            recorder.input("p.z"),
-        )
-    };
-    let value = P::distance(p(), Args::new(&&recorder));
-    let value = recorder.function("value", &[value]);
+    let value = P::distance(recorder.point("p"), Args::new(&&recorder));
+    let value = print("value", &recorder, &[value]);
     let recorder = Recorder::new();
-    let p = || {
-        v3(
-            recorder.input("p.x"),
-            recorder.input("p.y"),
-            recorder.input("p.z"),
-        )
-    };
-    let d = P::distance(Dual::point(p()), Args::new(&&recorder));
-    value + &recorder.function("gradient", &[d.d[0], d.d[1], d.d[2], d.v])
+    let d = P::distance(Dual::point(recorder.point("p")), Args::new(&&recorder));
+    value + &print("gradient", &recorder, &[d.d[0], d.d[1], d.d[2], d.v])
+}
+
+fn print(name: &str, recorder: &Recorder, results: &[Expr<'_>]) -> String {
+    let arguments = [("p", Argument::Vec3), ("at", Argument::Offset)];
+    let function = recorder.function(name, &arguments, results);
+    wgsl::print(&function.unwrap_or_else(|e| panic!("{e}")))
 }
 
 /// The levels that formulas are compiled for here: programs are tested at all of them.

@@ -1,5 +1,5 @@
 use super::*;
-use crate::number::{Args, Dual, F64, Interval, Lanes, Recorder};
+use crate::number::{Args, Argument, Dual, Expr, F64, Interval, Lanes, Recorder, wgsl};
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 struct Random(u64);
@@ -238,25 +238,16 @@ fn sum<R: Real>(p: Vec3<R>, a: Args<'_, R>) -> R {
 
 #[test]
 fn shaders_are_valid() {
-    let recorder = Recorder::new();
-    let p = || {
-        v3(
-            recorder.input("p.x"),
-            recorder.input("p.y"),
-            recorder.input("p.z"),
-        )
+    let signature = [("p", Argument::Vec3), ("at", Argument::Offset)];
+    let print = |name: &str, recorder: &Recorder, results: &[Expr<'_>]| {
+        let function = recorder.function(name, &signature, results);
+        wgsl::print(&function.unwrap_or_else(|e| panic!("{e}")))
     };
-    let value = recorder.function("value", &all(p()));
     let recorder = Recorder::new();
-    let p = || {
-        v3(
-            recorder.input("p.x"),
-            recorder.input("p.y"),
-            recorder.input("p.z"),
-        )
-    };
-    let d = sum(Dual::point(p()), Args::new(&&recorder));
-    let gradient = recorder.function("gradient", &[d.d[0], d.d[1], d.d[2], d.v]);
+    let value = print("value", &recorder, &all(recorder.point("p")));
+    let recorder = Recorder::new();
+    let d = sum(Dual::point(recorder.point("p")), Args::new(&&recorder));
+    let gradient = print("gradient", &recorder, &[d.d[0], d.d[1], d.d[2], d.v]);
     let head = "@group(0) @binding(0) var<storage, read> params: array<f32>;\n";
     let source = format!("{head}{value}{gradient}");
     let module = naga::front::wgsl::parse_str(&source)
