@@ -12,3 +12,4 @@ pub mod op;
 pub mod placement;
 pub mod program;
 pub mod repetition;
+pub mod text;

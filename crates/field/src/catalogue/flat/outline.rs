@@ -115,6 +115,19 @@ impl Primitive for Polygon {
     }
 }
 
+/// How many times the contours of these segments (x and y of start and end) run around a point, by the crossings of a ray
+/// upwards.
+pub(crate) fn winding(segments: &[f64], [x, y]: [f64; 2]) -> i32 {
+    let mut winding = 0;
+    for s in segments.chunks_exact(4) {
+        if (s[0] <= x) != (s[2] <= x) {
+            let height = s[1] + (x - s[0]) / (s[2] - s[0]) * (s[3] - s[1]);
+            winding += i32::from(height > y) * if s[0] <= x { -1 } else { 1 };
+        }
+    }
+    winding
+}
+
 /// Filled contours, as of letters.
 pub struct Outline;
 impl Primitive for Outline {
@@ -169,15 +182,7 @@ impl Primitive for Outline {
         around(a[1..].chunks_exact(2).map(|p| [p[0], p[1]]), 0.0)
     }
     fn contains(a: &[f64], [x, y, _]: [f64; 3]) -> bool {
-        // the winding number from the crossings of a ray upwards
-        let mut winding = 0;
-        for s in a[1..].chunks_exact(4) {
-            if (s[0] <= x) != (s[2] <= x) {
-                let height = s[1] + (x - s[0]) / (s[2] - s[0]) * (s[3] - s[1]);
-                winding += i32::from(height > y) * if s[0] <= x { 1 } else { -1 };
-            }
-        }
-        winding != 0
+        winding(&a[1..], [x, y]) != 0
     }
     fn check(a: &[f64]) -> Result<(), String> {
         let mut ends: Vec<([u64; 2], i32, usize)> = Vec::new();
