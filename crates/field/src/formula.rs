@@ -1,44 +1,131 @@
 //! Free-form fields: a formula over x, y and z.
+//!
+//! A formula is a list of [`Steps`], written down with a [`Builder`] or given as data. Nobody knows its slope beforehand,
+//! so [`Formula::prove`] finds the largest length of its gradient over a box by interval arithmetic, or says why there is
+//! none. [`Formula::stated`] takes somebody's word for it.
+//!
+//! ```
+//! use zeroset_field::bounds::Aabb;
+//! use zeroset_field::formula::{Budget, Builder, Formula};
+//!
+//! let formula = Builder::new();
+//! let p = formula.point();
+//! let bumpy = p.length() - 1.0 + (p.x() * 10.0).sin() * 0.1;
+//! let bumpy = Formula::prove(
+//!     formula.finish(&bumpy)?,
+//!     Aabb::centred([1.2; 3]),
+//!     &Budget::default(),
+//! )?;
+//! // the sphere has slope 1 and so has the wave
+//! assert!(bumpy.slope() > 1.9 && bumpy.slope() < 2.1);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::bounds::Aabb;
+use crate::number::{Real, Vec3};
+use crate::op::arithmetic;
+use crate::proof::{self, Tape};
+
+mod builder;
+mod function;
+pub(crate) mod print;
+
+pub use crate::proof::{Budget, Cause, Obstacle, ProofError};
+pub use builder::{BuildError, Builder, Expression, MAX_STEPS};
+pub use function::{Function, functions};
 
 /// A function of one number. Angles are radians.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum Unary {
+    /// The negation.
     Neg,
+    /// The absolute value.
     Abs,
+    /// The square root; 0 below 0.
     Sqrt,
+    /// The square.
     Square,
+    /// The largest whole number that is not above.
     Floor,
+    /// The sine.
     Sin,
+    /// The cosine.
     Cos,
+    /// The tangent.
     Tan,
+    /// The angle in [-pi/2, pi/2] that has this sine; beyond -1 and 1 that of the nearer end.
     Asin,
+    /// The angle in [0, pi] that has this cosine; beyond -1 and 1 that of the nearer end.
     Acos,
+    /// The angle in (-pi/2, pi/2) that has this tangent.
     Atan,
+    /// e to the power of it.
     Exp,
+    /// The natural logarithm; at 0 and below, that of the smallest number there is.
     Ln,
+    /// The hyperbolic tangent.
     Tanh,
+}
+
+impl Unary {
+    /// All of them.
+    pub const ALL: [Unary; 14] = [
+        Unary::Neg,
+        Unary::Abs,
+        Unary::Sqrt,
+        Unary::Square,
+        Unary::Floor,
+        Unary::Sin,
+        Unary::Cos,
+        Unary::Tan,
+        Unary::Asin,
+        Unary::Acos,
+        Unary::Atan,
+        Unary::Exp,
+        Unary::Ln,
+        Unary::Tanh,
+    ];
 }
 
 /// A function of two numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum Binary {
+    /// `x + y`.
     Add,
+    /// `x - y`.
     Sub,
+    /// `x y`.
     Mul,
+    /// `x / y`.
     Div,
+    /// The smaller.
     Min,
+    /// The larger.
     Max,
     /// `x - y floor(x / y)`.
     Modulo,
-    /// `x ^ y` for x > 0.
+    /// `x ^ y` for x > 0; x counts as above 0.
     Pow,
+    /// The angle of the point (y, x), in [-pi, pi]: the first operand is the ordinate.
     Atan2,
     /// `sqrt(x^2 + y^2)`: a function of its own because its slope is bounded where the root's is not.
     Hypot,
+}
+
+impl Binary {
+    /// All of them.
+    pub const ALL: [Binary; 10] = [
+        Binary::Add,
+        Binary::Sub,
+        Binary::Mul,
+        Binary::Div,
+        Binary::Min,
+        Binary::Max,
+        Binary::Modulo,
+        Binary::Pow,
+        Binary::Atan2,
+        Binary::Hypot,
+    ];
 }
 
 /// One step of a formula; operands are the numbers of earlier steps.
@@ -54,27 +141,211 @@ pub enum Step {
     Binary(Binary, u32, u32),
 }
 
+/// The largest constant that a formula may hold, in magnitude: its square fits single precision.
+pub const LARGEST: f64 = 1e18;
+
+/// The steepest formula that can be rendered: beyond it, single precision sees no slope but noise.
+pub const STEEPEST: f64 = 1e6;
+
+/// The slope of formulas that are flatter. Outside the box, the field is then at least the distance to the box, on which
+/// the boxes of offsets and smooth joins rely.
+const FLATTEST: f64 = 1.0;
+
+/// Why a list of steps is no formula.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StepsError {
+    /// No steps.
+    #[error("a formula needs at least one step")]
+    Empty,
+    /// More than [`MAX_STEPS`].
+    #[error("the formula has {given} steps, {limit} are allowed")]
+    TooMany {
+        /// Steps given.
+        given: usize,
+        /// Steps allowed.
+        limit: usize,
+    },
+    /// An operand that is no earlier step.
+    #[error("step {step} takes step {operand}, which does not come before it")]
+    Operand {
+        /// The step.
+        step: usize,
+        /// What it takes.
+        operand: u32,
+    },
+    /// A coordinate other than x, y and z.
+    #[error("step {step} is coordinate {axis}; there are 0 (x), 1 (y) and 2 (z)")]
+    Coordinate {
+        /// The step.
+        step: usize,
+        /// The coordinate.
+        axis: u8,
+    },
+    /// A constant that single precision cannot hold.
+    #[error("step {step} is the constant {value}, which must lie within -1e18 to 1e18")]
+    Constant {
+        /// The step.
+        step: usize,
+        /// The number.
+        value: f64,
+    },
+}
+
+/// The steps of a formula, the last of which is its value. Every operand comes before the step that takes it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Steps(Vec<Step>);
+
+impl Steps {
+    /// Checks a list of steps.
+    ///
+    /// # Errors
+    /// No steps or too many, operands that are no earlier steps, numbers out of range.
+    pub fn new(steps: Vec<Step>) -> Result<Steps, StepsError> {
+        if steps.is_empty() {
+            return Err(StepsError::Empty);
+        }
+        if steps.len() > MAX_STEPS {
+            let (given, limit) = (steps.len(), MAX_STEPS);
+            return Err(StepsError::TooMany { given, limit });
+        }
+        for (step, what) in steps.iter().enumerate() {
+            match *what {
+                Step::Coordinate(axis) if axis > 2 => {
+                    return Err(StepsError::Coordinate { step, axis });
+                }
+                // also refuses NaN
+                Step::Constant(value) if !(-LARGEST..=LARGEST).contains(&value) => {
+                    return Err(StepsError::Constant { step, value });
+                }
+                _ => {}
+            }
+            for operand in what.operands() {
+                if operand as usize >= step {
+                    return Err(StepsError::Operand { step, operand });
+                }
+            }
+        }
+        Ok(Steps(steps))
+    }
+
+    /// The steps in their order.
+    pub fn list(&self) -> &[Step] {
+        &self.0
+    }
+
+    /// The value at `p`.
+    pub fn eval<R: Real>(&self, p: Vec3<R>) -> R {
+        let mut values: Vec<R> = Vec::with_capacity(self.0.len());
+        for step in &self.0 {
+            values.push(step.eval(p, &values));
+        }
+        values[values.len() - 1]
+    }
+}
+
+impl Step {
+    /// Its value at `p`, from the values of earlier steps.
+    pub(crate) fn eval<R: Real>(&self, p: Vec3<R>, values: &[R]) -> R {
+        match *self {
+            Step::Coordinate(k) => [p.x, p.y, p.z][usize::from(k)],
+            Step::Constant(c) => p.x.like(R::constant(c)),
+            Step::Unary(f, x) => arithmetic::unary(f, values[x as usize]),
+            Step::Binary(f, x, y) => arithmetic::binary(f, values[x as usize], values[y as usize]),
+        }
+    }
+
+    /// The earlier steps that it takes.
+    pub(crate) fn operands(&self) -> impl Iterator<Item = u32> {
+        let (x, y) = match *self {
+            Step::Coordinate(_) | Step::Constant(_) => (None, None),
+            Step::Unary(_, x) => (Some(x), None),
+            Step::Binary(_, x, y) => (Some(x), Some(y)),
+        };
+        x.into_iter().chain(y)
+    }
+}
+
 /// A formula with its box and its slope.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Formula {
-    steps: Vec<Step>,
+    steps: Steps,
     bounds: Aabb,
     slope: f64,
     proven: bool,
+    steepest: f64,
+    steepest_at: [f64; 3],
+    cut: Option<[f64; 3]>,
 }
 
 impl Formula {
-    /// The steps; the last one is the value.
-    pub fn steps(&self) -> &[Step] {
-        &self.steps
+    /// A formula whose slope over the box is found by interval arithmetic: an upper bound on the length of its gradient
+    /// anywhere in the box.
+    ///
+    /// The proof holds for real numbers, with the constants as they are and as single precision holds them. A picture is
+    /// computed in single precision, where every step also rounds by one part in 1.7e7 of its value: a formula whose steps
+    /// are much larger than the details of its surface is noisy there, whatever its slope.
+    ///
+    /// # Errors
+    /// A box that is empty, endless or larger than 1e6; a formula whose gradient has no bound over the box, or none that
+    /// was found within the budget.
+    pub fn prove(steps: Steps, bounds: Aabb, budget: &Budget) -> Result<Formula, ProofError> {
+        let bounds = checked(bounds)?;
+        let tape = Tape::new(&steps);
+        let proof = proof::slope(&tape, &bounds, budget)?;
+        let cut = proof::cut(&tape, &bounds, proof.slope, budget);
+        Ok(Formula {
+            steps,
+            bounds,
+            slope: proof.slope.max(FLATTEST),
+            proven: true,
+            steepest: proof.steepest,
+            steepest_at: proof.steepest_at,
+            cut,
+        })
     }
 
-    /// The box inside which the formula is the field; outside, the field goes on from the box's surface.
+    /// A formula whose slope over the box is stated. It is looked at in some places, see [`Formula::steepest`], but a
+    /// slope that is too small makes holes in the picture.
+    ///
+    /// # Errors
+    /// A box that is empty, endless or larger than 1e6; a slope that is not above 0 or larger than 1e6.
+    pub fn stated(steps: Steps, bounds: Aabb, slope: f64) -> Result<Formula, ProofError> {
+        let bounds = checked(bounds)?;
+        // also refuses NaN
+        if !(f64::MIN_POSITIVE..=STEEPEST).contains(&slope) {
+            return Err(ProofError::Slope { given: slope });
+        }
+        let tape = Tape::new(&steps);
+        let (steepest, steepest_at) = proof::sample(&tape, &bounds);
+        let cut = proof::cut(&tape, &bounds, slope, &Budget::default());
+        Ok(Formula {
+            steps,
+            bounds,
+            slope: slope.max(FLATTEST),
+            proven: false,
+            steepest,
+            steepest_at,
+            cut,
+        })
+    }
+
+    /// The steps; the last one is the value.
+    pub fn steps(&self) -> &[Step] {
+        self.steps.list()
+    }
+
+    /// The value at `p`, wherever that is.
+    pub fn eval<R: Real>(&self, p: Vec3<R>) -> R {
+        self.steps.eval(p)
+    }
+
+    /// The box inside which the formula is the field; outside, the field goes on from the box's surface. Its sides are
+    /// numbers of single precision, as in the compiled program.
     pub fn bounds(&self) -> Aabb {
         self.bounds
     }
 
-    /// Lipschitz constant inside the box.
+    /// Lipschitz constant inside the box; no less than 1.
     pub fn slope(&self) -> f64 {
         self.slope
     }
@@ -83,4 +354,42 @@ impl Formula {
     pub fn is_proven(&self) -> bool {
         self.proven
     }
+
+    /// The longest gradient that was found, a lower bound on the slope. A proven slope is never below it, and the closer
+    /// the two are, the fewer steps a march needs. Where a stated slope is below it, the statement is wrong.
+    pub fn steepest(&self) -> f64 {
+        self.steepest
+    }
+
+    /// Where [`Formula::steepest`] was found.
+    pub fn steepest_at(&self) -> [f64; 3] {
+        self.steepest_at
+    }
+
+    /// Whether the surface reaches the side of the box, where it is cut: the solid is what lies inside the surface and in
+    /// the box. (A surface that touches the side is not cut.)
+    pub fn is_cut(&self) -> bool {
+        self.cut.is_some()
+    }
+
+    /// A point of the box's side that lies inside the surface, if it [is cut](Formula::is_cut).
+    pub fn cut_at(&self) -> Option<[f64; 3]> {
+        self.cut
+    }
+}
+
+/// The box with its sides as single precision holds them.
+fn checked(bounds: Aabb) -> Result<Aabb, ProofError> {
+    let single = |x: f64| f64::from(x as f32);
+    let bounds = Aabb::new(bounds.min.map(single), bounds.max.map(single));
+    let largest = crate::catalogue::LARGE;
+    let within = |x: &f64| (-largest..=largest).contains(x);
+    let sides = bounds.min.iter().chain(&bounds.max);
+    if !sides.clone().all(within) || (0..3).any(|k| bounds.min[k] >= bounds.max[k]) {
+        return Err(ProofError::Bounds {
+            min: bounds.min,
+            max: bounds.max,
+        });
+    }
+    Ok(bounds)
 }

@@ -11,5 +11,6 @@ pub mod number;
 pub mod op;
 pub mod placement;
 pub mod program;
+mod proof;
 pub mod repetition;
 pub mod text;

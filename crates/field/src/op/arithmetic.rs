@@ -1,6 +1,7 @@
 //! The arithmetic of free-form formulas, one operation each.
 
 use super::{Change, Leaf, Pair};
+use crate::formula::{Binary, Unary};
 use crate::number::{Args, Real, Vec3, length2};
 
 /// x, y or z.
@@ -23,17 +24,33 @@ impl Leaf for Constant {
     }
 }
 
+/// What logarithms and powers take for a number that is not above it: the smallest normal number of single precision,
+/// below which the vector code for them has no meaning.
+pub const TINY: f32 = f32::MIN_POSITIVE;
+
 macro_rules! unary {
-    ($($(#[$doc:meta])* $name:ident |$x:ident| $value:expr;)*) => {$(
-        $(#[$doc])*
-        pub struct $name;
-        impl Change for $name {
-            #[inline(always)]
-            fn change<R: Real>($x: R, _p: Vec3<R>, _a: Args<'_, R>) -> R {
-                $value
+    ($($(#[$doc:meta])* $name:ident |$x:ident| $value:expr;)*) => {
+        $(
+            $(#[$doc])*
+            pub struct $name;
+            impl Change for $name {
+                #[inline(always)]
+                fn change<R: Real>($x: R, _p: Vec3<R>, _a: Args<'_, R>) -> R {
+                    $value
+                }
+            }
+        )*
+
+        /// A function of one number.
+        pub fn unary<R: Real>(f: Unary, x: R) -> R {
+            match f {
+                $(Unary::$name => {
+                    let $x = x;
+                    $value
+                })*
             }
         }
-    )*};
+    };
 }
 
 unary! {
@@ -61,23 +78,35 @@ unary! {
     Atan |x| x.atan();
     /// `e^x`
     Exp |x| x.exp();
-    /// Natural logarithm.
-    Ln |x| x.ln();
+    /// Natural logarithm of `x`, which counts as no less than [`TINY`].
+    Ln |x| x.max(TINY).ln();
     /// Hyperbolic tangent.
     Tanh |x| x.tanh();
 }
 
 macro_rules! binary {
-    ($($(#[$doc:meta])* $name:ident |$x:ident, $y:ident| $value:expr;)*) => {$(
-        $(#[$doc])*
-        pub struct $name;
-        impl Pair for $name {
-            #[inline(always)]
-            fn pair<R: Real>($x: R, $y: R, _a: Args<'_, R>) -> R {
-                $value
+    ($($(#[$doc:meta])* $name:ident |$x:ident, $y:ident| $value:expr;)*) => {
+        $(
+            $(#[$doc])*
+            pub struct $name;
+            impl Pair for $name {
+                #[inline(always)]
+                fn pair<R: Real>($x: R, $y: R, _a: Args<'_, R>) -> R {
+                    $value
+                }
+            }
+        )*
+
+        /// A function of two numbers.
+        pub fn binary<R: Real>(f: Binary, x: R, y: R) -> R {
+            match f {
+                $(Binary::$name => {
+                    let ($x, $y) = (x, y);
+                    $value
+                })*
             }
         }
-    )*};
+    };
 }
 
 binary! {
@@ -94,9 +123,9 @@ binary! {
     /// The larger.
     Max |x, y| x.max(y);
     /// `x - y floor(x / y)`
-    Modulo |x, y| x - y * (x / y).floor();
-    /// `x^y` for x > 0.
-    Pow |x, y| (x.ln() * y).exp();
+    Modulo |x, y| x.modulo(y);
+    /// `x^y` of `x`, which counts as no less than [`TINY`].
+    Pow |x, y| (x.max(TINY).ln() * y).exp();
     /// Angle of (y, x): the first operand is the ordinate.
     Atan2 |x, y| x.atan2(y);
     /// `sqrt(x^2 + y^2)`

@@ -52,11 +52,17 @@ impl Change for Scale {
     }
 }
 
-/// The value `d` of the nearest point of a box (six numbers), continued to `p` outside: `hypot(slope |p - box|, d)`.
+/// The value `d` of the nearest point of a box (six numbers, then the slope of `d` inside it), continued to `p` outside:
+/// `hypot(slope |p - box|, d)`.
 ///
 /// The solid lies inside the box, which is convex: for a point q of it and the box's nearest point c,
 /// |p - q|^2 >= |p - c|^2 + |c - q|^2, so that this never overestimates (Tomczak 2012, algorithm 4.1, corrected). It has
 /// the slope that `d` has inside the box.
+///
+/// A solid that reaches the side of the box is cut there: inside, the value is no less than that of the box itself. Where
+/// the solid ends before the side, `d` never is.
+///
+/// A value that is not a number, as formulas of unproven slope may have at single places, counts as far outside.
 pub struct Continue;
 
 impl Change for Continue {
@@ -64,9 +70,22 @@ impl Change for Continue {
     fn change<R: Real>(d: R, p: Vec3<R>, a: Args<'_, R>) -> R {
         let c = Clamp::warp(p, a);
         let beyond = R::norm([p.x - c.x, p.y - c.y, p.z - c.z]) * a.get(6);
-        R::select(beyond.above(0.0), length2(beyond, d.max(0.0)), d)
+        let x = (p.x - a.get(0)).min(-(p.x - a.get(3)));
+        let y = (p.y - a.get(1)).min(-(p.y - a.get(4)));
+        let z = (p.z - a.get(2)).min(-(p.z - a.get(5)));
+        let depth = x.min(y).min(z) * a.get(6);
+        // a comparison, because the minimum with what is not a number is either
+        let d = R::select(d.below(FAR), d, d.lit(FAR));
+        R::select(
+            beyond.above(0.0),
+            length2(beyond, d.max(0.0)),
+            d.max(-depth),
+        )
     }
 }
+
+/// Farther than any place of a scene; its square fits single precision.
+const FAR: f32 = 1e18;
 
 /// Parameters that [`RepeatCell`] and [`RepeatWall`] share, three numbers each: whether the axis is repeated (1 or 0), the
 /// spacing, the shift of cell centres (0 or 1/2 of a cell), the first and the last cell.

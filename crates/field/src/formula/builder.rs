@@ -1,0 +1,709 @@
+//! Writing a formula down.
+
+use super::print::{number, text};
+use super::{Binary, LARGEST, Step, Steps, Unary};
+use crate::number::F64;
+use crate::op::arithmetic;
+use std::collections::HashMap;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Most steps of a formula.
+pub const MAX_STEPS: usize = 4096;
+
+/// Why a formula cannot be written down.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BuildError {
+    /// More steps than the limit.
+    #[error(
+        "the formula takes more than {limit} steps, which is the limit; build the shape of several fields instead"
+    )]
+    Steps {
+        /// The limit.
+        limit: usize,
+    },
+    /// A constant that is not finite or out of range, or that became so when constants were folded.
+    #[error("{expression} is {value}, and numbers of a formula must lie within -1e18 to 1e18")]
+    Constant {
+        /// The constant, as text.
+        expression: String,
+        /// Its value.
+        value: f64,
+    },
+    /// A value of another formula.
+    #[error("a value of one formula is used in another: a formula can only use its own point")]
+    Foreign,
+    /// Vectors of different lengths, or a number where a vector is needed.
+    #[error("{function} needs {wanted}, not {given}")]
+    Parts {
+        /// Function or operator.
+        function: &'static str,
+        /// What it needs.
+        wanted: &'static str,
+        /// What it got.
+        given: String,
+    },
+    /// The wrong number of arguments.
+    #[error("{function} takes {wanted}, {given} given")]
+    Arguments {
+        /// Function.
+        function: &'static str,
+        /// What it takes.
+        wanted: String,
+        /// Number of arguments given.
+        given: usize,
+    },
+    /// A value that is a vector.
+    #[error(
+        "the value of a formula is one number, this is a vector of {parts}; length(...) makes a number of it"
+    )]
+    Vector {
+        /// Its length.
+        parts: usize,
+    },
+}
+
+/// A formula that is being written down: a list of steps that [`Expression`]s append to. Cloning gives another handle to
+/// the same formula.
+///
+/// Equal steps are written once. Constants are not: which numbers happen to be equal must not change a formula's
+/// structure. A function of nothing but constants is a constant again.
+///
+/// A mistake does not interrupt: the first one is kept and told by [`Builder::check`] and [`Builder::finish`].
+#[derive(Clone, Debug)]
+pub struct Builder(Arc<Mutex<State>>);
+
+#[derive(Debug)]
+struct State {
+    steps: Vec<Step>,
+    known: HashMap<Key, u32>,
+    limit: usize,
+    failure: Option<BuildError>,
+}
+
+/// What makes two steps equal.
+#[derive(PartialEq, Eq, Hash, Debug)]
+enum Key {
+    Unary(Unary, u32),
+    Binary(Binary, u32, u32),
+}
+
+/// Coordinates, which are always the first steps.
+const COORDINATES: [Step; 3] = [
+    Step::Coordinate(0),
+    Step::Coordinate(1),
+    Step::Coordinate(2),
+];
+
+impl Default for Builder {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Builder {
+    /// An empty formula of at most [`MAX_STEPS`] steps.
+    pub fn new() -> Builder {
+        Builder::with_limit(MAX_STEPS)
+    }
+
+    /// An empty formula of at most `limit` steps, and no more than [`MAX_STEPS`].
+    pub fn with_limit(limit: usize) -> Builder {
+        Builder(Arc::new(Mutex::new(State {
+            steps: COORDINATES.to_vec(),
+            known: HashMap::new(),
+            limit: limit.min(MAX_STEPS),
+            failure: None,
+        })))
+    }
+
+    /// The point at which the formula is evaluated: a vector of x, y and z.
+    pub fn point(&self) -> Expression {
+        self.expression(&[0, 1, 2])
+    }
+
+    /// A number.
+    pub fn constant(&self, c: f64) -> Expression {
+        let step = self.state().constant(c);
+        self.expression(&[step])
+    }
+
+    /// A vector of numbers or of parts of vectors, in their order: 2 to 4 in all.
+    pub fn vector(&self, parts: &[Expression]) -> Expression {
+        let mut steps = Vec::new();
+        for part in parts {
+            if !self.owns(part) {
+                return self.fail(BuildError::Foreign);
+            }
+            steps.extend_from_slice(part.steps());
+        }
+        if !(2..=4).contains(&steps.len()) {
+            return self.fail(BuildError::Parts {
+                function: "a vector",
+                wanted: "2 to 4 numbers",
+                given: steps.len().to_string(),
+            });
+        }
+        self.expression(&steps)
+    }
+
+    /// A function of one number, part by part.
+    pub fn unary(&self, f: Unary, x: &Expression) -> Expression {
+        if !self.owns(x) {
+            return self.fail(BuildError::Foreign);
+        }
+        let mut state = self.state();
+        let mut out = [0; 4];
+        for (out, &x) in out.iter_mut().zip(x.steps()) {
+            *out = state.unary(f, x);
+        }
+        self.expression(&out[..x.parts()])
+    }
+
+    /// A function of two numbers, part by part; a number stands for a vector of equal parts.
+    pub fn binary(&self, f: Binary, x: &Expression, y: &Expression) -> Expression {
+        if !self.owns(x) || !self.owns(y) {
+            return self.fail(BuildError::Foreign);
+        }
+        let n = x.parts().max(y.parts());
+        if [x, y].iter().any(|e| e.parts() != 1 && e.parts() != n) {
+            return self.fail(BuildError::Parts {
+                function: super::print::binary(f),
+                wanted: "numbers or vectors of the same length",
+                given: format!("{} and {}", x.spoken(), y.spoken()),
+            });
+        }
+        let mut state = self.state();
+        let mut out = [0; 4];
+        for (k, out) in out[..n].iter_mut().enumerate() {
+            *out = state.binary(f, x.spread(k), y.spread(k));
+        }
+        self.expression(&out[..n])
+    }
+
+    /// Whether all went well so far.
+    ///
+    /// # Errors
+    /// The first mistake.
+    pub fn check(&self) -> Result<(), BuildError> {
+        self.state().failure.clone().map_or(Ok(()), Err)
+    }
+
+    /// The steps that `value` needs.
+    ///
+    /// # Errors
+    /// The first mistake that was made, or a value that is a vector or belongs to another formula.
+    pub fn finish(&self, value: &Expression) -> Result<Steps, BuildError> {
+        if !self.owns(value) {
+            return Err(BuildError::Foreign);
+        }
+        self.check()?;
+        let &[last] = value.steps() else {
+            let parts = value.parts();
+            return Err(BuildError::Vector { parts });
+        };
+        let state = self.state();
+        let mut used = vec![false; last as usize + 1];
+        used[last as usize] = true;
+        for step in (0..used.len()).rev() {
+            if used[step] {
+                for operand in state.steps[step].operands() {
+                    used[operand as usize] = true;
+                }
+            }
+        }
+        let mut renamed = vec![0; used.len()];
+        let mut steps = Vec::new();
+        for step in 0..used.len() {
+            if used[step] {
+                renamed[step] = steps.len() as u32;
+                let name = |x: u32| renamed[x as usize];
+                steps.push(match state.steps[step] {
+                    Step::Unary(f, x) => Step::Unary(f, name(x)),
+                    Step::Binary(f, x, y) => Step::Binary(f, name(x), name(y)),
+                    leaf => leaf,
+                });
+            }
+        }
+        Ok(Steps(steps))
+    }
+
+    /// Remembers a mistake; what is given back stands for the value that there is not.
+    pub(super) fn fail(&self, error: BuildError) -> Expression {
+        self.state().failure.get_or_insert(error);
+        self.expression(&[0])
+    }
+
+    fn owns(&self, e: &Expression) -> bool {
+        Arc::ptr_eq(&self.0, &e.builder.0)
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        // a list of steps is whole after every statement
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn expression(&self, steps: &[u32]) -> Expression {
+        let mut all = [0; 4];
+        all[..steps.len()].copy_from_slice(steps);
+        Expression {
+            builder: self.clone(),
+            steps: all,
+            parts: steps.len() as u8,
+        }
+    }
+}
+
+impl State {
+    fn push(&mut self, step: Step) -> u32 {
+        if self.steps.len() >= self.limit {
+            let limit = self.limit;
+            self.failure.get_or_insert(BuildError::Steps { limit });
+            return 0;
+        }
+        self.steps.push(step);
+        self.steps.len() as u32 - 1
+    }
+
+    fn constant(&mut self, c: f64) -> u32 {
+        // also refuses NaN
+        if !(-LARGEST..=LARGEST).contains(&c) {
+            self.failure.get_or_insert(BuildError::Constant {
+                expression: "a constant".into(),
+                value: c,
+            });
+            return 0;
+        }
+        self.push(Step::Constant(c))
+    }
+
+    /// A constant that an operation on constants gave.
+    fn folded(&mut self, c: f64, expression: impl FnOnce(&[Step]) -> String) -> u32 {
+        if !(-LARGEST..=LARGEST).contains(&c) {
+            let expression = expression(&self.steps);
+            self.failure.get_or_insert(BuildError::Constant {
+                expression,
+                value: c,
+            });
+            return 0;
+        }
+        self.push(Step::Constant(c))
+    }
+
+    fn unary(&mut self, f: Unary, x: u32) -> u32 {
+        match self.steps[x as usize] {
+            Step::Constant(c) => {
+                let value = arithmetic::unary(f, F64(c)).0;
+                return self.folded(value, |_| {
+                    format!("{}({})", super::print::unary(f), number(c))
+                });
+            }
+            Step::Unary(Unary::Neg, y) => match f {
+                Unary::Neg => return y,
+                Unary::Abs | Unary::Square | Unary::Cos => return self.unary(f, y),
+                _ => {}
+            },
+            _ => {}
+        }
+        if f == Unary::Sqrt
+            && let Some(roots) = self.roots(x)
+        {
+            return self.hypot(&roots);
+        }
+        if let Some(&known) = self.known.get(&Key::Unary(f, x)) {
+            return known;
+        }
+        let step = self.push(Step::Unary(f, x));
+        self.known.insert(Key::Unary(f, x), step);
+        step
+    }
+
+    fn binary(&mut self, f: Binary, x: u32, y: u32) -> u32 {
+        if let (Step::Constant(a), Step::Constant(b)) =
+            (self.steps[x as usize], self.steps[y as usize])
+        {
+            let value = arithmetic::binary(f, F64(a), F64(b)).0;
+            return self.folded(value, |steps| {
+                let mut steps = steps.to_vec();
+                steps.push(Step::Binary(f, x, y));
+                text(&steps, steps.len() as u32 - 1)
+            });
+        }
+        // a square is never negative, and its slope is found more closely
+        if f == Binary::Mul && x == y {
+            return self.unary(Unary::Square, x);
+        }
+        if matches!(f, Binary::Min | Binary::Max) && x == y {
+            return x;
+        }
+        let symmetric = matches!(
+            f,
+            Binary::Add | Binary::Mul | Binary::Min | Binary::Max | Binary::Hypot
+        );
+        let key = if symmetric && x > y {
+            Key::Binary(f, y, x)
+        } else {
+            Key::Binary(f, x, y)
+        };
+        if let Some(&known) = self.known.get(&key) {
+            return known;
+        }
+        let step = self.push(Step::Binary(f, x, y));
+        self.known.insert(key, step);
+        step
+    }
+
+    /// What is squared in a sum of squares.
+    fn roots(&self, x: u32) -> Option<Vec<u32>> {
+        match self.steps[x as usize] {
+            Step::Unary(Unary::Square, root) => Some(vec![root]),
+            Step::Binary(Binary::Add, x, y) => {
+                let mut roots = self.roots(x)?;
+                roots.extend(self.roots(y)?);
+                (roots.len() <= 8).then_some(roots)
+            }
+            _ => None,
+        }
+    }
+
+    /// `sqrt(x^2 + ...)`, which is the absolute value of a number alone.
+    fn hypot(&mut self, parts: &[u32]) -> u32 {
+        let (&first, rest) = parts.split_first().expect("a length has parts");
+        if rest.is_empty() {
+            return self.unary(Unary::Abs, first);
+        }
+        rest.iter().fold(first, |length, &part| {
+            self.binary(Binary::Hypot, length, part)
+        })
+    }
+}
+
+/// A value of a formula that is being written down: a number, or a vector of 2 to 4 numbers.
+///
+/// Functions of numbers go part by part over vectors, and where one takes several, a number stands for a vector of equal
+/// parts. Plain `f64` numbers are constants.
+#[derive(Clone, Debug)]
+pub struct Expression {
+    builder: Builder,
+    steps: [u32; 4],
+    parts: u8,
+}
+
+/// An operand: an expression, or a number that becomes a constant of the same formula.
+pub trait Operand {
+    /// The operand as an expression of the formula that `other` belongs to.
+    fn beside(&self, other: &Expression) -> Expression;
+}
+
+impl Operand for Expression {
+    fn beside(&self, _other: &Expression) -> Expression {
+        self.clone()
+    }
+}
+
+impl Operand for &Expression {
+    fn beside(&self, _other: &Expression) -> Expression {
+        (*self).clone()
+    }
+}
+
+impl Operand for f64 {
+    fn beside(&self, other: &Expression) -> Expression {
+        other.builder.constant(*self)
+    }
+}
+
+macro_rules! unary_methods {
+    ($($(#[$doc:meta])* $name:ident $f:ident;)*) => {$(
+        $(#[$doc])*
+        pub fn $name(&self) -> Expression {
+            self.builder.unary(Unary::$f, self)
+        }
+    )*};
+}
+
+macro_rules! binary_methods {
+    ($($(#[$doc:meta])* $name:ident $f:ident;)*) => {$(
+        $(#[$doc])*
+        pub fn $name(&self, o: impl Operand) -> Expression {
+            self.builder.binary(Binary::$f, self, &o.beside(self))
+        }
+    )*};
+}
+
+impl Expression {
+    /// The formula it belongs to.
+    pub fn builder(&self) -> &Builder {
+        &self.builder
+    }
+
+    /// How many numbers it is: 1, or the length of the vector.
+    pub fn parts(&self) -> usize {
+        usize::from(self.parts)
+    }
+
+    /// Part `k` of a vector.
+    pub fn part(&self, k: usize) -> Expression {
+        if k >= self.parts() {
+            return self.builder.fail(BuildError::Parts {
+                function: ["x", "y", "z", "w"].get(k).copied().unwrap_or("a part"),
+                wanted: "a longer vector",
+                given: self.spoken(),
+            });
+        }
+        self.builder.expression(&[self.steps[k]])
+    }
+
+    /// First part.
+    pub fn x(&self) -> Expression {
+        self.part(0)
+    }
+
+    /// Second part.
+    pub fn y(&self) -> Expression {
+        self.part(1)
+    }
+
+    /// Third part.
+    pub fn z(&self) -> Expression {
+        self.part(2)
+    }
+
+    /// Parts by their letters, as in `xz` or `zyx`; `None` for a name that holds anything but the letters of its parts.
+    pub fn swizzle(&self, name: &str) -> Option<Expression> {
+        let letter = |c: char| "xyzw"[..self.parts()].find(c).map(|k| self.steps[k]);
+        let steps: Vec<u32> = name.chars().map(letter).collect::<Option<_>>()?;
+        ((1..=4).contains(&steps.len()) && self.parts > 1).then(|| self.builder.expression(&steps))
+    }
+
+    unary_methods! {
+        /// Absolute value.
+        abs Abs;
+        /// Square root; 0 below 0. Of a sum of squares it becomes the [`length`](Expression::length), whose slope is
+        /// bounded.
+        sqrt Sqrt;
+        /// The square.
+        square Square;
+        /// The largest whole number that is not above.
+        floor Floor;
+        /// Sine of an angle in radians.
+        sin Sin;
+        /// Cosine of an angle in radians.
+        cos Cos;
+        /// Tangent of an angle in radians.
+        tan Tan;
+        /// Angle in [-pi/2, pi/2] that has this sine.
+        asin Asin;
+        /// Angle in [0, pi] that has this cosine.
+        acos Acos;
+        /// Angle in (-pi/2, pi/2) that has this tangent.
+        atan Atan;
+        /// e to the power of it.
+        exp Exp;
+        /// Natural logarithm.
+        ln Ln;
+        /// Hyperbolic tangent.
+        tanh Tanh;
+    }
+
+    binary_methods! {
+        /// The smaller.
+        min Min;
+        /// The larger.
+        max Max;
+        /// `self - o floor(self / o)`.
+        modulo Modulo;
+        /// self to the power of `o`, for self above 0.
+        pow Pow;
+        /// Angle of the point (`o`, self) in [-pi, pi].
+        atan2 Atan2;
+        /// `sqrt(self^2 + o^2)`.
+        hypot Hypot;
+    }
+
+    /// self to a whole power, by squaring: also for self below 0. The power is part of the formula's structure.
+    pub fn powi(&self, n: u32) -> Expression {
+        let Some(top) = n.checked_ilog2() else {
+            return self * 0.0 + 1.0;
+        };
+        (0..top).rev().fold(self.clone(), |power, bit| {
+            let power = power.square();
+            if n >> bit & 1 == 1 {
+                power * self
+            } else {
+                power
+            }
+        })
+    }
+
+    /// The value of a constant number.
+    pub fn as_constant(&self) -> Option<f64> {
+        match (self.steps(), self.builder.state()) {
+            (&[step], state) => match state.steps[step as usize] {
+                Step::Constant(c) => Some(c),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// The smallest whole number that is not below.
+    pub fn ceil(&self) -> Expression {
+        -(-self).floor()
+    }
+
+    /// The nearest whole number, halves upwards.
+    pub fn round(&self) -> Expression {
+        (self + 0.5).floor()
+    }
+
+    /// `self - floor(self)`.
+    pub fn fract(&self) -> Expression {
+        self - self.floor()
+    }
+
+    /// -1 below 0, else 1.
+    pub fn sign(&self) -> Expression {
+        self.clamp(-0.5, 0.5).floor() * 2.0 + 1.0
+    }
+
+    /// 0 where self is below `edge`, else 1.
+    pub fn step(&self, edge: impl Operand) -> Expression {
+        (self - edge).clamp(-0.5, 0.5).floor() + 1.0
+    }
+
+    /// self, but not outside [`lo`, `hi`].
+    pub fn clamp(&self, lo: impl Operand, hi: impl Operand) -> Expression {
+        self.max(lo).min(hi)
+    }
+
+    /// `self + (o - self) t`.
+    pub fn mix(&self, o: impl Operand, t: impl Operand) -> Expression {
+        self + (o.beside(self) - self) * t
+    }
+
+    /// The cubic step 3 t^2 - 2 t^3, where t goes from 0 at `lo` to 1 at `hi`.
+    pub fn smoothstep(&self, lo: impl Operand, hi: impl Operand) -> Expression {
+        let (lo, hi) = (lo.beside(self), hi.beside(self));
+        let t = ((self - &lo) / (hi - &lo)).clamp(0.0, 1.0);
+        t.square() * (-(t * 2.0) + 3.0)
+    }
+
+    /// Euclidean length of a vector; the absolute value of a number. Its slope is at most 1.
+    pub fn length(&self) -> Expression {
+        let step = self.builder.state().hypot(self.steps());
+        self.builder.expression(&[step])
+    }
+
+    /// Euclidean distance of two points.
+    pub fn distance(&self, o: impl Operand) -> Expression {
+        (self - o).length()
+    }
+
+    /// Scalar product.
+    pub fn dot(&self, o: impl Operand) -> Expression {
+        let product = self * o;
+        let mut sum = product.part(0);
+        for k in 1..product.parts() {
+            sum = sum + product.part(k);
+        }
+        sum
+    }
+
+    /// Vector product of two vectors of 3.
+    pub fn cross(&self, o: impl Operand) -> Expression {
+        let o = o.beside(self);
+        if (self.parts, o.parts) != (3, 3) {
+            return self.builder.fail(BuildError::Parts {
+                function: "cross",
+                wanted: "two vectors of 3",
+                given: format!("{} and {}", self.spoken(), o.spoken()),
+            });
+        }
+        let part = |a: usize, b: usize| self.part(a) * o.part(b) - self.part(b) * o.part(a);
+        self.builder.vector(&[part(1, 2), part(2, 0), part(0, 1)])
+    }
+
+    /// The vector of length 1 in the same direction. It jumps where the vector is zero.
+    pub fn normalize(&self) -> Expression {
+        self / self.length()
+    }
+
+    /// The smallest part.
+    pub fn least(&self) -> Expression {
+        (1..self.parts()).fold(self.part(0), |least, k| least.min(self.part(k)))
+    }
+
+    /// The largest part.
+    pub fn greatest(&self) -> Expression {
+        (1..self.parts()).fold(self.part(0), |greatest, k| greatest.max(self.part(k)))
+    }
+
+    fn steps(&self) -> &[u32] {
+        &self.steps[..self.parts()]
+    }
+
+    /// The step of part `k`; a number has equal parts.
+    fn spread(&self, k: usize) -> u32 {
+        self.steps[if self.parts == 1 { 0 } else { k }]
+    }
+
+    fn spoken(&self) -> String {
+        match self.parts {
+            1 => "a number".into(),
+            n => format!("a vector of {n}"),
+        }
+    }
+}
+
+macro_rules! operators {
+    ($($trait:ident $method:ident $f:ident;)*) => {$(
+        impl<T: Operand> $trait<T> for &Expression {
+            type Output = Expression;
+            fn $method(self, o: T) -> Expression {
+                self.builder.binary(Binary::$f, self, &o.beside(self))
+            }
+        }
+
+        impl<T: Operand> $trait<T> for Expression {
+            type Output = Expression;
+            fn $method(self, o: T) -> Expression {
+                $trait::$method(&self, o)
+            }
+        }
+
+        impl $trait<&Expression> for f64 {
+            type Output = Expression;
+            fn $method(self, o: &Expression) -> Expression {
+                $trait::$method(self.beside(o), o)
+            }
+        }
+
+        impl $trait<Expression> for f64 {
+            type Output = Expression;
+            fn $method(self, o: Expression) -> Expression {
+                $trait::$method(self, &o)
+            }
+        }
+    )*};
+}
+operators! {
+    Add add Add;
+    Sub sub Sub;
+    Mul mul Mul;
+    Div div Div;
+}
+
+impl Neg for &Expression {
+    type Output = Expression;
+    fn neg(self) -> Expression {
+        self.builder.unary(Unary::Neg, self)
+    }
+}
+
+impl Neg for Expression {
+    type Output = Expression;
+    fn neg(self) -> Expression {
+        -&self
+    }
+}

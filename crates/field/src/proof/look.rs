@@ -1,0 +1,91 @@
+//! Looking at a formula in places: where it is steep, where its box cuts it, how far its solid reaches.
+
+use super::search::Waiting;
+use super::{Budget, Cell, Tape};
+use crate::bounds::Aabb;
+use crate::number::{Dual, F64, v3};
+use std::collections::BinaryHeap;
+
+/// Length of the gradient at a point; 0 where it has none.
+pub(super) fn gradient(tape: &Tape, [x, y, z]: [f64; 3], duals: &mut Vec<Dual<F64>>) -> f64 {
+    let Dual { v, d } = tape.eval(Dual::point(v3(F64(x), F64(y), F64(z))), duals);
+    let length = d.iter().map(|d| d.0 * d.0).sum::<f64>().sqrt();
+    if v.0.is_finite() && length.is_finite() {
+        length
+    } else {
+        0.0
+    }
+}
+
+/// The longest gradient in some places of the box.
+pub(crate) fn sample(tape: &Tape, bounds: &Aabb) -> (f64, [f64; 3]) {
+    const SIDE: usize = 8;
+    let mut duals = Vec::new();
+    let mut steepest = (0.0, bounds.centre());
+    for i in 0..SIDE * SIDE * SIDE {
+        let index = [i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE];
+        let p = std::array::from_fn(|k| {
+            // off the middle of the box, where kinks are
+            let t = (index[k] as f64 + 0.43) / SIDE as f64;
+            bounds.min[k] + t * (bounds.max[k] - bounds.min[k])
+        });
+        let length = gradient(tape, p, &mut duals);
+        if length > steepest.0 {
+            steepest = (length, p);
+        }
+    }
+    steepest
+}
+
+/// A point of the box's side where the formula is below zero by more than a hair, if there is one that can be found: the
+/// lowest part of the side is cut until it is known to be above.
+pub(crate) fn cut(tape: &Tape, bounds: &Aabb, slope: f64, budget: &Budget) -> Option<[f64; 3]> {
+    let whole = Cell::of(bounds);
+    let hair = 1e-6 * slope * whole.longest();
+    let (mut jets, mut values) = (Vec::new(), Vec::new());
+    let mut heap = BinaryHeap::new();
+    let mut looked = 0;
+    let mut look = |cell: Cell| {
+        looked += 1;
+        let jet = tape.jets(&cell, &mut jets);
+        let [x, y, z] = cell.centre().map(F64);
+        let middle = tape.eval(v3(x, y, z), &mut values).0;
+        let change = |k: usize| 0.5 * cell.side(k) * jet.slope.d[k].mag().min(slope);
+        // rounding is no matter here: nothing but a warning depends on it
+        let lowest = jet
+            .value()
+            .lo
+            .max(middle - (change(0) + change(1) + change(2)));
+        let waiting = Waiting {
+            urgency: -lowest,
+            order: u64::MAX - looked,
+            cell,
+            axis: (1..3).fold(0, |best, k| if change(k) > change(best) { k } else { best }),
+        };
+        (waiting, middle < -hair, looked)
+    };
+    let mut found = Vec::new();
+    for k in 0..3 {
+        for side in [bounds.min[k], bounds.max[k]] {
+            let mut cell = whole;
+            (cell.min[k], cell.max[k]) = (side, side);
+            found.push(look(cell));
+        }
+    }
+    loop {
+        for (waiting, inside, looked) in found.drain(..) {
+            if inside {
+                return Some(waiting.cell.centre());
+            }
+            if looked > budget.cells(tape) / 8 {
+                return None;
+            }
+            heap.push(waiting);
+        }
+        let lowest = heap.pop()?;
+        if lowest.urgency <= hair {
+            return None;
+        }
+        found.extend(lowest.cell.split(lowest.axis).map(&mut look));
+    }
+}

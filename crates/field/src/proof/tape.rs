@@ -1,0 +1,273 @@
+//! A formula as the proof runs it.
+
+use super::jet::Jet;
+use crate::bounds::Aabb;
+use crate::formula::{Binary, Step, Steps, Unary};
+use crate::number::{Interval, Real, Slope, Vec3, v3};
+
+/// A box: smallest and largest corner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Cell {
+    pub(crate) min: [f64; 3],
+    pub(crate) max: [f64; 3],
+}
+
+impl Cell {
+    pub(crate) fn of(bounds: &Aabb) -> Cell {
+        Cell {
+            min: bounds.min,
+            max: bounds.max,
+        }
+    }
+
+    pub(crate) fn longest(&self) -> f64 {
+        self.side(0).max(self.side(1)).max(self.side(2))
+    }
+
+    pub(crate) fn centre(&self) -> [f64; 3] {
+        std::array::from_fn(|k| 0.5 * (self.min[k] + self.max[k]))
+    }
+
+    pub(crate) fn side(&self, k: usize) -> f64 {
+        self.max[k] - self.min[k]
+    }
+
+    /// The two halves along axis `k`.
+    pub(crate) fn split(&self, k: usize) -> [Cell; 2] {
+        let (mut low, mut high) = (*self, *self);
+        let middle = self.centre()[k];
+        (low.max[k], high.min[k]) = (middle, middle);
+        [low, high]
+    }
+}
+
+/// How many turns an angle jumps by, where it jumps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Turns {
+    /// It does not jump.
+    None,
+    /// By whole multiples of so many turns.
+    Of(f64),
+    /// By anything.
+    Any,
+}
+
+impl Turns {
+    /// Whether a function that is the same after `period` turns does not see the jump.
+    fn is_hidden(self, period: f64) -> bool {
+        match self {
+            Turns::None => true,
+            Turns::Of(turns) => {
+                let periods = turns / period;
+                (periods - periods.round()).abs() <= 1e-9 * periods.abs().max(1.0)
+                    && periods.abs() < 1e6
+            }
+            Turns::Any => false,
+        }
+    }
+
+    fn plus(self, o: Turns) -> Turns {
+        match (self, o) {
+            (Turns::None, t) | (t, Turns::None) => t,
+            (a, b) if a == b => a,
+            (a, b) if a.is_hidden(1.0) && b.is_hidden(1.0) => Turns::Of(1.0),
+            _ => Turns::Any,
+        }
+    }
+
+    fn times(self, factor: Option<f64>) -> Turns {
+        match (self, factor) {
+            (Turns::Of(t), Some(c)) if c != 0.0 => Turns::Of(t * c),
+            (Turns::None, _) => Turns::None,
+            _ => Turns::Any,
+        }
+    }
+}
+
+/// What a step does with an operand that may have jumped by a turn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Passing {
+    /// Jumps as well.
+    On,
+    /// Does not see it.
+    Hidden,
+    /// Jumps in a way that is not followed further.
+    Jump,
+}
+
+/// Steps with what is known of them wherever they are evaluated.
+#[derive(Debug)]
+pub(crate) struct Tape {
+    steps: Vec<Step>,
+    /// For every step, the coordinates that it depends on, as bits.
+    reach: Vec<u8>,
+    passing: Vec<Passing>,
+    /// Sums one side of which is 0 wherever the other is not.
+    exclusive: Vec<bool>,
+}
+
+/// Whether a step is `length(max(a, 0), max(b, 0), ...) + min(max(a, b, ...), 0)`, as in the distance to a box from its
+/// faces: inside all faces the first term is 0, elsewhere the second. Bounds on the two would be added otherwise, in every
+/// box that holds a piece of the surface, however small.
+fn is_exclusive(steps: &[Step], step: usize) -> bool {
+    let Step::Binary(Binary::Add, x, y) = steps[step] else {
+        return false;
+    };
+    [(x, y), (y, x)].into_iter().any(|(length, inside)| {
+        let Some(greatest) = beside_zero(steps, Binary::Min, inside) else {
+            return false;
+        };
+        let (mut parts, mut faces) = (Vec::new(), Vec::new());
+        leaves(steps, Binary::Hypot, length, &mut parts);
+        leaves(steps, Binary::Max, greatest, &mut faces);
+        (parts.iter()).all(|&part| {
+            beside_zero(steps, Binary::Max, part).is_some_and(|face| faces.contains(&face))
+        })
+    })
+}
+
+/// The other operand of `f`, where one is the constant 0.
+fn beside_zero(steps: &[Step], f: Binary, step: u32) -> Option<u32> {
+    let zero = |i: u32| steps[i as usize] == Step::Constant(0.0);
+    match steps[step as usize] {
+        Step::Binary(g, x, y) if f == g && zero(y) => Some(x),
+        Step::Binary(g, x, y) if f == g && zero(x) => Some(y),
+        _ => None,
+    }
+}
+
+/// What a nest of one function is made of, as far as it is of any use to look.
+fn leaves(steps: &[Step], f: Binary, step: u32, found: &mut Vec<u32>) {
+    const ENOUGH: usize = 16;
+    match steps[step as usize] {
+        Step::Binary(g, x, y) if f == g && found.len() < ENOUGH => {
+            leaves(steps, f, x, found);
+            leaves(steps, f, y, found);
+        }
+        _ => found.push(step),
+    }
+}
+
+impl Tape {
+    pub(crate) fn new(steps: &Steps) -> Tape {
+        let steps = steps.list().to_vec();
+        let mut reach: Vec<u8> = Vec::with_capacity(steps.len());
+        let mut turns: Vec<Turns> = Vec::with_capacity(steps.len());
+        let mut passing = Vec::with_capacity(steps.len());
+        let constant = |i: u32| match steps[i as usize] {
+            Step::Constant(c) => Some(c),
+            _ => None,
+        };
+        for step in &steps {
+            let operand = |i: u32| turns[i as usize];
+            let (bits, after, pass) = match *step {
+                Step::Coordinate(k) => (1 << k, Turns::None, Passing::On),
+                Step::Constant(_) => (0, Turns::None, Passing::On),
+                Step::Unary(f, x) => {
+                    let before = operand(x);
+                    let (after, pass) = match f {
+                        _ if before == Turns::None => (Turns::None, Passing::On),
+                        Unary::Neg => (before, Passing::On),
+                        Unary::Sin | Unary::Cos if before.is_hidden(1.0) => {
+                            (Turns::None, Passing::Hidden)
+                        }
+                        Unary::Tan if before.is_hidden(0.5) => (Turns::None, Passing::Hidden),
+                        _ => (Turns::None, Passing::Jump),
+                    };
+                    (reach[x as usize], after, pass)
+                }
+                Step::Binary(f, x, y) => {
+                    let (a, b) = (operand(x), operand(y));
+                    let after = match f {
+                        Binary::Atan2 if (a, b) == (Turns::None, Turns::None) => Turns::Of(1.0),
+                        Binary::Add | Binary::Sub => a.plus(b),
+                        Binary::Mul if b == Turns::None => a.times(constant(y)),
+                        Binary::Mul if a == Turns::None => b.times(constant(x)),
+                        Binary::Div if b == Turns::None => a.times(constant(y).map(|c| 1.0 / c)),
+                        _ if (a, b) == (Turns::None, Turns::None) => Turns::None,
+                        _ => Turns::Any,
+                    };
+                    let (after, pass) = match after {
+                        Turns::Any if f == Binary::Atan2 => (Turns::Of(1.0), Passing::Jump),
+                        Turns::Any => (Turns::None, Passing::Jump),
+                        after => (after, Passing::On),
+                    };
+                    (reach[x as usize] | reach[y as usize], after, pass)
+                }
+            };
+            reach.push(bits);
+            turns.push(after);
+            passing.push(pass);
+        }
+        let exclusive = (0..steps.len())
+            .map(|step| is_exclusive(&steps, step))
+            .collect();
+        Tape {
+            steps,
+            reach,
+            passing,
+            exclusive,
+        }
+    }
+
+    pub(crate) fn steps(&self) -> &[Step] {
+        &self.steps
+    }
+
+    /// The coordinates that a step depends on.
+    pub(crate) fn reaches(&self, step: usize, axis: usize) -> bool {
+        self.reach[step] >> axis & 1 == 1
+    }
+
+    /// What is known of every step over a cell; the last one is the formula.
+    pub(crate) fn jets(&self, cell: &Cell, jets: &mut Vec<Jet>) -> Jet {
+        let [x, y, z] = std::array::from_fn(|k| Interval {
+            lo: cell.min[k],
+            hi: cell.max[k],
+        });
+        let point = Slope::point(v3(x, y, z)).array();
+        jets.clear();
+        for step in 0..self.steps.len() {
+            let jet = self.jet(step, &point, jets);
+            jets.push(jet);
+        }
+        jets[self.steps.len() - 1]
+    }
+
+    /// The value at a point; `values` is for those of the steps.
+    pub(crate) fn eval<R: Real>(&self, p: Vec3<R>, values: &mut Vec<R>) -> R {
+        values.clear();
+        for step in &self.steps {
+            values.push(step.eval(p, values));
+        }
+        values[values.len() - 1]
+    }
+
+    fn jet(&self, step: usize, point: &[Slope; 3], known: &[Jet]) -> Jet {
+        let operand = |i: u32| &known[i as usize];
+        let (mut jet, turned) = match self.steps[step] {
+            Step::Coordinate(k) => return Jet::coordinate(point[usize::from(k)]),
+            Step::Constant(c) => return Jet::constant(c),
+            Step::Unary(f, x) => (Jet::unary(f, operand(x)), operand(x).turned),
+            Step::Binary(_, x, y) if self.exclusive[step] => {
+                let (x, y) = (operand(x), operand(y));
+                (Jet::either(x, y), x.turned || y.turned)
+            }
+            Step::Binary(f, x, y) => {
+                let exponent = matches!(self.steps[y as usize], Step::Constant(_));
+                let turned = operand(x).turned || operand(y).turned;
+                (Jet::binary(f, operand(x), operand(y), exponent), turned)
+            }
+        };
+        match self.passing[step] {
+            Passing::Hidden => jet.turned = false,
+            Passing::Jump if turned => jet.break_off(),
+            _ => {}
+        }
+        // the value of a formula must not jump, whatever the angle
+        if step + 1 == self.steps.len() && jet.turned {
+            jet.break_off();
+        }
+        jet
+    }
+}
