@@ -39,8 +39,11 @@ impl Picture {
     }
 
     /// The colour plane of a film, brightened by `exposure` stops, clamped to what a screen can show, and sRGB-coded.
-    /// What is not a number becomes black.
+    /// What is not a number becomes black, and so does a film without that plane.
     pub fn develop(film: &Film, exposure: f32) -> Picture {
+        if film.plane(Plane::Colour).is_empty() {
+            return Picture::filled(film.width(), film.height(), [0.0; 3]);
+        }
         let gain = exposure.exp2();
         let (linear, _) = film.plane(Plane::Colour).as_chunks::<3>();
         let pixels = linear

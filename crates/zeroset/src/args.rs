@@ -2,10 +2,12 @@
 
 use crate::console::Colour;
 use crate::failure::EXIT_CODES;
-use crate::values::{SectionPlane, Size, Window, assignment};
+use crate::values::{Frames, MarchChoice, SectionPlane, Size, Window, assignment};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueHint};
 use clap_complete::Shell;
 use std::path::PathBuf;
+use zeroset_scene::film::Plane;
 
 /// Renders signed distance fields: from a scene of a few lines to a picture.
 #[derive(Debug, Parser)]
@@ -51,6 +53,8 @@ pub(crate) struct Global {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    /// Render a scene to a picture
+    Render(Render),
     /// Check a scene: its objects, their bounds, what is proven about their distances
     Check(Check),
     /// Print a scene as JSON, which every command takes in place of a script
@@ -93,6 +97,46 @@ pub(crate) struct SceneArgs {
     /// Change a limit on what a scene may cost; can be given many times. `zeroset fields limits` lists them
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment, help_heading = "Scene")]
     pub limit: Vec<(String, String)>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Render {
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// The picture: .png, or .exr with all planes as layers. Default: the scene's name, in this folder
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
+    /// Size in pixels, for example 1920x1080. Default: what the scene says, or 512x512
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<Size>,
+    /// Show a plane of the film as a picture
+    #[arg(long, value_name = "PLANE", value_parser = plane_parser(), default_value = "colour")]
+    pub view: Plane,
+    /// Leave out the strip beside a view that explains its colours
+    #[arg(long)]
+    pub no_legend: bool,
+    /// Bits a channel of a PNG
+    #[arg(long, value_name = "BITS", value_parser = PossibleValuesParser::new(["8", "16"]), default_value = "8")]
+    pub bits: String,
+    /// How rays find the surface: fixed[=STEP], sphere, relaxed[=OMEGA], enhanced[=SHARE] or auto[=BETA]
+    #[arg(long, value_name = "METHOD")]
+    pub march: Option<MarchChoice>,
+    /// Threads; the picture is the same with any number. Default: all cores
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Render many pictures, numbered from A to just before B (or A..=B with B), one for each frame of time. In the
+    /// output's name, #### is the place of the number; without it the number goes before the ending
+    #[arg(long, value_name = "A..B", conflicts_with = "watch")]
+    pub frames: Option<Frames>,
+    /// Frames a second, which says what time it is at a frame: --time plus frame / fps
+    #[arg(long, value_name = "N", default_value_t = 30.0, value_parser = crate::values::positive, requires = "frames")]
+    pub fps: f64,
+    /// Render again whenever a file that the scene loads is saved, until Ctrl-C
+    #[arg(long)]
+    pub watch: bool,
+    /// Print what was rendered and what it took as JSON, one line a picture
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -170,13 +214,30 @@ pub(crate) struct Bench {
 pub(crate) enum Measure {
     /// Evaluate a scene's field in SIMD batches, and one point at a time
     Eval(Measured),
+    /// Count evaluations a ray by each marcher, and hits that a dense march finds and it does not
+    March(Measured),
+    /// Render pictures by the stream renderer and by the plain one, at equal threads
+    Frame(MeasuredFrame),
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct Measured {
-    /// The scene. Default: three joined solids over a floor
+    /// The scene. Default: three joined solids over a floor (eval), a city of boxes (march)
     #[arg(value_name = "SCENE", value_hint = ValueHint::FilePath)]
     pub scene: Option<PathBuf>,
+    /// Print as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MeasuredFrame {
+    /// The scene. Default: a sphere and a box on the ground, soft shadows, 5-tap occlusion, 512x512
+    #[arg(value_name = "SCENE", value_hint = ValueHint::FilePath)]
+    pub scene: Option<PathBuf>,
+    /// Threads of both renderers
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub threads: u16,
     /// Print as JSON
     #[arg(long)]
     pub json: bool,
@@ -201,4 +262,13 @@ pub(crate) struct Man {
     /// The command to explain. Default: zeroset itself
     #[arg(value_name = "COMMAND")]
     pub command: Option<String>,
+}
+
+fn plane_parser() -> impl TypedValueParser<Value = Plane> {
+    PossibleValuesParser::new(Plane::ALL.map(Plane::name)).try_map(|name| {
+        Plane::ALL
+            .into_iter()
+            .find(|p| p.name() == name)
+            .ok_or("no such plane")
+    })
 }

@@ -7,6 +7,33 @@
 //! | [`trace`] | the renderer on the CPU |
 //! | [`output`] | pictures and files |
 //! | [`section`] | fields on a plane |
+//!
+//! A scene becomes a picture in four steps:
+//!
+//! ```
+//! use zeroset::output::{atomic, format, picture::Picture};
+//! use zeroset::scene::load::{Language, Options, load_text};
+//! use zeroset::scene::render::{Renderer, Silent};
+//! use zeroset::trace::CpuRenderer;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let text = "show(sphere(0.8) - box(1.0).move(x = 0.6))";
+//! let options = Options { size: Some([48, 32]), ..Options::default() };
+//! let loaded = load_text("bitten.star", text, Language::Starlark, None, &options)?;
+//!
+//! let frame = CpuRenderer::new(Some(2))?.render(&loaded.scene, &Silent)?;
+//! assert!(frame.statistics.hits > 100);
+//!
+//! let picture = Picture::develop(&frame.film, loaded.scene.settings.exposure);
+//! let folder = std::env::temp_dir().join(format!("zeroset-doc-{}", std::process::id()));
+//! atomic::create_folder(&folder)?;
+//! atomic::write_atomically(&folder.join("bitten.png"), |writer| {
+//!     format::png::write(writer, &picture, format::png::Depth::Eight, &format::Notes::new("bitten"))
+//! })?;
+//! # std::fs::remove_dir_all(&folder)?;
+//! # Ok(())
+//! # }
+//! ```
 
 pub mod section;
 

@@ -8,6 +8,7 @@ mod failure;
 mod interrupt;
 mod json;
 mod reference;
+mod render;
 mod scene;
 mod values;
 
@@ -62,6 +63,7 @@ fn main() -> ExitCode {
 
 fn run(command: &Command, console: &Console) -> Result<(), Failure> {
     match command {
+        Command::Render(args) => render::run(args, console),
         Command::Check(args) => command::check::run(args, console),
         Command::Expand(args) => command::expand::run(args, console),
         Command::Slice(args) => command::slice::run(args, console),

@@ -70,12 +70,12 @@ impl FromStr for MarchChoice {
         };
         Ok(MarchChoice(match name {
             "fixed" => March::Fixed {
-                step: within(0.01, 1e-5, 1e3, "the step")?,
+                step: within(0.02, 1e-5, 1e3, "the step")?,
             },
             "sphere" if number.is_some() => return Err("`sphere` takes no number".to_owned()),
             "sphere" => March::Sphere,
             "relaxed" => March::Relaxed {
-                omega: within(1.6, 1.0, 1.99, "omega")?,
+                omega: within(1.2, 1.0, 1.99, "omega")?,
             },
             "enhanced" => March::Enhanced {
                 share: within(0.9, 0.1, 0.99, "the share")?,

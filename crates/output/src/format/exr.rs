@@ -24,13 +24,16 @@ fn channels(plane: Plane) -> &'static [&'static str] {
     }
 }
 
-/// Writes all planes of a film, 32-bit floats, losslessly compressed.
+/// Writes all planes that a film has, 32-bit floats, losslessly compressed.
 ///
 /// # Errors
 /// What the writer gives; a film without pixels.
 pub fn write(writer: impl Write + Seek, film: &Film, notes: &Notes) -> io::Result<()> {
     let size = Vec2(film.width() as usize, film.height() as usize);
-    let list = Plane::ALL.iter().flat_map(|&plane| {
+    let held = Plane::ALL
+        .iter()
+        .filter(|plane| !film.plane(**plane).is_empty());
+    let list = held.flat_map(|&plane| {
         let numbers = film.plane(plane);
         (0..).zip(channels(plane)).map(move |(c, &name)| {
             let samples = numbers

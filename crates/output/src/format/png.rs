@@ -59,15 +59,22 @@ pub fn write(writer: impl Write, picture: &Picture, depth: Depth, notes: &Notes)
                 }
             }
         }
-        stream.write_all(&line)?;
+        stream.write_all(&line).map_err(unwrapped)?;
     }
     stream.finish().map_err(plain)?;
     writer.finish().map_err(plain)
 }
 
+/// The error of the writer below, which the encoder's stream wraps up without its kind.
+fn unwrapped(error: io::Error) -> io::Error {
+    error
+        .downcast::<EncodingError>()
+        .map_or_else(|error| error, plain)
+}
+
 fn plain(error: EncodingError) -> io::Error {
     match error {
-        EncodingError::IoError(error) => error,
+        EncodingError::IoError(error) => unwrapped(error),
         other => io::Error::new(io::ErrorKind::InvalidInput, other),
     }
 }

@@ -33,10 +33,14 @@ pub struct View<'a> {
 }
 
 impl View<'_> {
-    /// Shows a film's plane.
+    /// Shows a film's plane; of a film that does not have it, [`NOTHING`].
     pub fn of(&self, film: &Film) -> Picture {
         let plane = film.plane(self.plane);
+        if plane.is_empty() {
+            return Picture::filled(film.width(), film.height(), NOTHING);
+        }
         let depth = film.plane(Plane::Depth);
+        let is_hit = |i: usize| depth.get(i).is_none_or(|d| d.is_finite());
         let (triples, _) = plane.as_chunks::<3>();
         match self.plane {
             Plane::Colour => Picture::develop(film, self.exposure),
@@ -63,14 +67,10 @@ impl View<'_> {
                 )
             }
             Plane::Residual => {
-                let hits = plane
-                    .iter()
-                    .zip(depth)
-                    .filter(|(_, d)| d.is_finite())
-                    .map(|(&x, _)| x);
+                let hits = (0..plane.len()).filter(|&i| is_hit(i)).map(|i| plane[i]);
                 let scale = Scale::decades(hits);
                 let legend = Legend::new("|f|", scale, |t| map(colorous::MAGMA, t), Some("none"));
-                self.mapped(film, legend, |i| depth[i].is_finite())
+                self.mapped(film, legend, is_hit)
             }
             Plane::Object => {
                 let picture = at_pixels(film, |i| object_colour(plane[i]));

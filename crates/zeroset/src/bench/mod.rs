@@ -1,13 +1,19 @@
 //! `zeroset bench`: how fast it is, as ratios of what was measured in one run.
 
 mod eval;
+mod frame;
+mod march;
 
 use crate::args::{Bench, Measure};
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
 use crate::json;
 use zeroset_field::program::{Limits, Program};
-use zeroset_scene::load::{Language, Loaded, Options, load, load_text};
+use zeroset_scene::load::{Language, Options, load, load_text};
+use zeroset_scene::render::RenderError;
+use zeroset_scene::scene::Scene;
+use zeroset_scene::settings::{Antialias, Normals, Occlusion, Settings};
+use zeroset_trace as trace;
 
 /// Three joined solids over a floor.
 const SCENE: &str = r#"
@@ -19,7 +25,10 @@ show(joined | plane().move(y = -0.9))
 pub(crate) fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
     match &args.measure {
         Measure::Eval(what) => {
-            let scene = loaded(what.scene.as_deref())?.scene;
+            let scene = match &what.scene {
+                Some(path) => loaded(path)?,
+                None => load_text("bench.star", SCENE, Language::Starlark, None, &Options::default())?.scene,
+            };
             let invalid = |error: String| Failure::new(Exit::Scene, error);
             let field = scene.field().map_err(|error| invalid(error.to_string()))?;
             let field = field.ok_or_else(|| invalid("the scene shows nothing".to_owned()))?;
@@ -42,14 +51,73 @@ pub(crate) fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
                 found.simd_over_scalar,
             ))
         }
+        Measure::March(what) => {
+            let scene = match &what.scene {
+                Some(path) => loaded(path)?,
+                None => trace::bench::city(),
+            };
+            let found = march::march(&scene).map_err(failed)?;
+            if what.json {
+                return console.print(&json::line(&found)?);
+            }
+            let row = |(name, evaluations): (&String, &f64)| {
+                let (share, missed) = (found.share_of_sphere[name], found.missed_hits[name]);
+                format!("{name:16} {evaluations:8.2} evaluations a ray, {share:5.2} of sphere, {missed} hits missed")
+            };
+            let rows: Vec<String> = found.evaluations_per_ray.iter().map(row).collect();
+            console.print(&rows.join("\n"))
+        }
+        Measure::Frame(what) => {
+            let scene = match &what.scene {
+                Some(path) => loaded(path)?,
+                None => sphere_box_ground(),
+            };
+            let found = frame::frame(&scene, usize::from(what.threads)).map_err(failed)?;
+            if what.json {
+                return console.print(&json::line(&found)?);
+            }
+            let e = found.evaluations_per_pixel;
+            console.print(&format!(
+                "{}x{}, {} threads\n\
+                 {:.1} frames a second, {:.1} times the plain renderer ({:.1} ms a frame), {:.1} dB to its picture\n\
+                 evaluations a pixel: {:.1} (prepass {:.1}, march {:.1}, normal {:.1}, occlusion {:.1}, shadow {:.1}, \
+                 material {:.1})",
+                found.size[0],
+                found.size[1],
+                found.threads,
+                found.frames_per_second,
+                found.simd_over_plain,
+                found.plain_milliseconds,
+                found.psnr,
+                e.total,
+                e.prepass,
+                e.march,
+                e.normal,
+                e.occlusion,
+                e.shadow,
+                e.material,
+            ))
+        }
     }
 }
 
-/// The scene that was named, or the one above.
-fn loaded(scene: Option<&std::path::Path>) -> Result<Loaded, Failure> {
-    let options = Options::default();
-    Ok(match scene {
-        Some(path) => load(path, &options)?,
-        None => load_text("bench.star", SCENE, Language::Starlark, None, &options)?,
-    })
+/// The scene of the frame benchmark: soft shadows, five samples of occlusion, a ray a pixel.
+fn sphere_box_ground() -> Scene {
+    let mut scene = trace::bench::sphere_box_ground();
+    scene.settings = Settings {
+        occlusion: Occlusion::Quilez { steps: 5, step: 0.12, scale: 1.5 },
+        antialias: Antialias::None,
+        normals: Normals::Exact,
+        ..scene.settings
+    };
+    scene
+}
+
+fn failed(error: RenderError) -> Failure {
+    Failure::new(Exit::Job, error.to_string())
+}
+
+/// The scene that was named.
+fn loaded(path: &std::path::Path) -> Result<Scene, Failure> {
+    Ok(load(path, &Options::default())?.scene)
 }

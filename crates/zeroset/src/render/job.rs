@@ -1,0 +1,195 @@
+//! One rendering: from a loaded scene to a file.
+
+use super::summary::{Evaluations, Summary};
+use super::target::{Container, default_name, numbered};
+use crate::args::Render;
+use crate::console::Console;
+use crate::failure::{Exit, Failure};
+use crate::json;
+use indicatif::ProgressBar;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use zeroset_output::atomic::{probe, write_atomically};
+use zeroset_output::format::png::Depth;
+use zeroset_output::format::{Notes, exr, png};
+use zeroset_output::view::View;
+use zeroset_scene::film::Plane;
+use zeroset_scene::load::{Loaded, Options};
+use zeroset_scene::render::{Frame, Observer, Renderer};
+use zeroset_scene::scene::Scene;
+use zeroset_trace::CpuRenderer;
+
+/// What the flags ask for.
+pub(crate) struct Job<'a> {
+    pub(crate) args: &'a Render,
+    pub(crate) console: &'a Console,
+    pub(crate) options: Options,
+    renderer: CpuRenderer,
+}
+
+impl<'a> Job<'a> {
+    pub(crate) fn new(args: &'a Render, console: &'a Console) -> Result<Job<'a>, Failure> {
+        let options = crate::scene::options(&args.scene, args.size.map(|s| s.0))?;
+        if let Some(path) = &args.output
+            && Container::of(path)? == Container::Exr
+            && args.view != Plane::Colour
+        {
+            let help = "leave out --view, or end the name in .png";
+            return Err(Failure::with_help(
+                Exit::Usage,
+                "an .exr holds all planes",
+                help,
+            ));
+        }
+        let renderer = CpuRenderer::new(args.threads.map(usize::from))?;
+        Ok(Job {
+            args,
+            console,
+            options,
+            renderer,
+        })
+    }
+
+    /// Renders to the file that the flags name, and says what it took.
+    ///
+    /// # Errors
+    /// The file cannot be written (which is found out first), the scene cannot be rendered, `cancelled` says to stop.
+    pub(crate) fn render(
+        &self,
+        loaded: &Loaded,
+        options: &Options,
+        frame: Option<(u32, &Range<u32>)>,
+        cancelled: &(dyn Fn() -> bool + Sync),
+    ) -> Result<(), Failure> {
+        let mut scene = loaded.scene.clone();
+        if let Some(march) = self.args.march {
+            scene.settings.march = march.0;
+        }
+        let mut path = self
+            .args
+            .output
+            .clone()
+            .unwrap_or_else(|| default_name(&scene.name, self.args.view));
+        let mut label = scene.name.clone();
+        if let Some((number, frames)) = frame {
+            path = numbered(&path, number, frames);
+            label = format!("{label} {}/{}", number - frames.start + 1, frames.len());
+        }
+        probe(&path)?;
+        let progress = Progress {
+            bar: self.console.bar(label),
+            cancelled,
+        };
+        let rendered = self.renderer.render(&scene, &progress);
+        progress.bar.finish_and_clear();
+        let rendered = rendered?;
+        self.write(&path, &scene, options, &rendered)?;
+        self.report(
+            &path,
+            &scene,
+            options,
+            frame.map(|(number, _)| number),
+            &rendered,
+        )
+    }
+
+    fn write(
+        &self,
+        path: &Path,
+        scene: &Scene,
+        options: &Options,
+        rendered: &Frame,
+    ) -> Result<(), Failure> {
+        let mut notes = Notes::new(&scene.name).with("Settings", json::line(&scene.settings)?);
+        if !options.set.is_empty() {
+            notes = notes.with("Parameters", json::line(&options.set)?);
+        }
+        if options.time != 0.0 {
+            notes = notes.with("Time", options.time.to_string());
+        }
+        if self.args.view != Plane::Colour {
+            notes = notes.with("View", self.args.view.name());
+        }
+        match Container::of(path)? {
+            Container::Exr => {
+                write_atomically(path, |writer| exr::write(writer, &rendered.film, &notes))?
+            }
+            Container::Png => {
+                let names: Vec<String> = scene.objects.iter().map(|o| o.name.clone()).collect();
+                let view = View {
+                    plane: self.args.view,
+                    exposure: scene.settings.exposure,
+                    legend: !self.args.no_legend,
+                    objects: &names,
+                };
+                let picture = view.of(&rendered.film);
+                let depth = if self.args.bits == "16" {
+                    Depth::Sixteen
+                } else {
+                    Depth::Eight
+                };
+                write_atomically(path, |writer| png::write(writer, &picture, depth, &notes))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn report(
+        &self,
+        path: &Path,
+        scene: &Scene,
+        options: &Options,
+        frame: Option<u32>,
+        rendered: &Frame,
+    ) -> Result<(), Failure> {
+        let statistics = &rendered.statistics;
+        let rays = statistics.rays.max(1) as f64;
+        let summary = Summary {
+            scene: &scene.name,
+            file: PathBuf::from(path).to_string_lossy().into_owned(),
+            width: rendered.film.width(),
+            height: rendered.film.height(),
+            view: self.args.view.name(),
+            frame,
+            time: options.time,
+            set: &options.set,
+            seconds: statistics.seconds,
+            threads: statistics.threads,
+            rays: statistics.rays,
+            hits: statistics.hits,
+            rays_per_second: statistics.rays as f64 / statistics.seconds.max(1e-9),
+            evaluations: Evaluations::of(statistics),
+            evaluations_per_ray: statistics.evaluations.total() as f64 / rays,
+            settings: &scene.settings,
+        };
+        if self.args.json {
+            return self.console.print(&json::line(&summary)?);
+        }
+        self.console.note(summary.line());
+        Ok(())
+    }
+}
+
+/// Tells the bar, and asks whether to stop.
+struct Progress<'a> {
+    bar: ProgressBar,
+    cancelled: &'a (dyn Fn() -> bool + Sync),
+}
+
+impl Observer for Progress<'_> {
+    fn advance(&self, rays: u64, total: u64) {
+        if self.bar.length() != Some(total) {
+            self.bar.set_length(total);
+        }
+        self.bar.inc(rays);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        (self.cancelled)()
+    }
+}
+
+/// Whether a failure is a rendering that was asked to stop.
+pub(crate) fn was_cancelled(failure: &Failure) -> bool {
+    failure.exit == Exit::Interrupted
+}

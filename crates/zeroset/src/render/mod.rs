@@ -1,0 +1,55 @@
+//! `zeroset render`: one picture, many frames, or again on every save.
+
+mod job;
+mod summary;
+mod target;
+mod watch;
+
+use crate::args::Render;
+use crate::console::Console;
+use crate::failure::{Exit, Failure};
+use crate::interrupt;
+use job::Job;
+use std::time::Instant;
+
+/// Renders.
+pub(crate) fn run(args: &Render, console: &Console) -> Result<(), Failure> {
+    let job = Job::new(args, console)?;
+    match &args.frames {
+        _ if args.watch => watch::run(&job),
+        Some(frames) => run_frames(&job, frames.0.clone()),
+        None => {
+            let loaded = crate::scene::loaded(&args.scene, &job.options, console)?;
+            job.render(&loaded, &job.options, None, &interrupt::requested)
+        }
+    }
+}
+
+/// Renders frame by frame; each loads the scene again at its own time.
+fn run_frames(job: &Job<'_>, frames: std::ops::Range<u32>) -> Result<(), Failure> {
+    let start = Instant::now();
+    let count = frames.len();
+    for frame in frames.clone() {
+        if interrupt::requested() {
+            return Err(Failure::silent(Exit::Interrupted));
+        }
+        let mut options = job.options.clone();
+        options.time += f64::from(frame) / job.args.fps;
+        let loaded = crate::scene::loaded(&job.args.scene, &options, job.console)?;
+        if frame == frames.start && count > 1 && !loaded.animated {
+            job.console
+                .note("The scene does not use time(): all frames will be the same.");
+        }
+        job.render(
+            &loaded,
+            &options,
+            Some((frame, &frames)),
+            &interrupt::requested,
+        )?;
+    }
+    job.console.note(format_args!(
+        "{count} frames in {:.1} s",
+        start.elapsed().as_secs_f64()
+    ));
+    Ok(())
+}

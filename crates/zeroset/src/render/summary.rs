@@ -1,0 +1,77 @@
+//! What a picture was and what it took.
+
+use crate::console::{grouped, short};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use zeroset_scene::render::Statistics;
+use zeroset_scene::settings::Settings;
+
+/// What `--json` prints of a picture.
+#[derive(Serialize)]
+pub(crate) struct Summary<'a> {
+    pub(crate) scene: &'a str,
+    pub(crate) file: String,
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    pub(crate) view: &'static str,
+    /// Number of the frame, if it is one of many.
+    pub(crate) frame: Option<u32>,
+    /// What time() was, seconds.
+    pub(crate) time: f64,
+    /// Parameters that were set.
+    pub(crate) set: &'a BTreeMap<String, String>,
+    /// Rendering, seconds.
+    pub(crate) seconds: f64,
+    pub(crate) threads: usize,
+    pub(crate) rays: u64,
+    pub(crate) hits: u64,
+    pub(crate) rays_per_second: f64,
+    pub(crate) evaluations: Evaluations,
+    pub(crate) evaluations_per_ray: f64,
+    pub(crate) settings: &'a Settings,
+}
+
+/// Evaluations of the field, by stage.
+#[derive(Serialize)]
+pub(crate) struct Evaluations {
+    total: u64,
+    prepass: u64,
+    march: u64,
+    normal: u64,
+    occlusion: u64,
+    shadow: u64,
+    material: u64,
+}
+
+impl Evaluations {
+    pub(crate) fn of(statistics: &Statistics) -> Evaluations {
+        let e = statistics.evaluations;
+        Evaluations {
+            total: e.total(),
+            prepass: e.prepass,
+            march: e.march,
+            normal: e.normal,
+            occlusion: e.occlusion,
+            shadow: e.shadow,
+            material: e.material,
+        }
+    }
+}
+
+impl Summary<'_> {
+    /// For a person, on one line.
+    pub(crate) fn line(&self) -> String {
+        format!(
+            "{}: {}x{}, {} rays in {:.3} s ({} rays/s), {:.1} evaluations a ray, {} thread{}",
+            self.file,
+            self.width,
+            self.height,
+            grouped(self.rays),
+            self.seconds,
+            short(self.rays_per_second),
+            self.evaluations_per_ray,
+            self.threads,
+            if self.threads == 1 { "" } else { "s" },
+        )
+    }
+}

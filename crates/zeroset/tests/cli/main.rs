@@ -1,0 +1,10 @@
+//! The command line from outside: exit codes, what goes to which stream, and what happens to files.
+
+mod compare;
+mod frames;
+mod language;
+mod reference;
+mod render;
+mod run;
+mod usage;
+mod watch;
