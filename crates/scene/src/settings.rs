@@ -35,7 +35,6 @@ pub enum March {
 #[serde(rename_all = "snake_case")]
 pub enum Normals {
     /// Four samples at the corners of a tetrahedron.
-    #[default]
     Tetrahedron,
     /// Six samples, central differences (Tomczak 2012, 3.1).
     Central,
@@ -43,7 +42,9 @@ pub enum Normals {
     Samples18,
     /// 26 samples (Tomczak 2012, 3.1).
     Samples26,
-    /// Dual numbers: the exact gradient.
+    /// Dual numbers: the exact gradient. The default: in SIMD it costs less than four samples, and samples on both sides of a
+    /// crease blend its normals to one that is lit more than either.
+    #[default]
     Exact,
 }
 
@@ -215,7 +216,7 @@ impl Default for Settings {
             hit_selection: true,
             discontinuity_reduction: 2,
             footprint: 0.5,
-            normals: Normals::Tetrahedron,
+            normals: Normals::Exact,
             shading: Shading::Phong,
             occlusion: Occlusion::Cones {
                 reach: 1.5,

@@ -4,7 +4,9 @@ use crate::beam::{Aim, Penumbra, stream};
 use crate::normal::sample;
 use crate::sampling::{cosine_direction, sobol};
 use crate::shadow::Hard;
-use crate::simd::{Chosen, along, first_lanes, load, load_words, load3, sided, splat, splat3, store, store3};
+use crate::simd::{
+    Chosen, along, first_lanes, load, load_words, load3, sided, splat, splat3, store, store3,
+};
 use crate::tile::{Scratch, Solid};
 use fearless_simd::{Simd, prelude::*};
 use std::ops::Range;
@@ -19,7 +21,13 @@ pub(crate) const UP: [f32; 3] = [0.0, 1.0, 0.0];
 const NOTHING: f32 = 1.0 / 4096.0;
 
 /// Finds the ambient visibility and the bent normals of the hits of the range.
-pub(crate) fn occlusion<S: Simd>(s: S, solid: &Solid<'_>, method: Occlusion, range: Range<usize>, q: &mut Scratch) {
+pub(crate) fn occlusion<S: Simd>(
+    s: S,
+    solid: &Solid<'_>,
+    method: Occlusion,
+    range: Range<usize>,
+    q: &mut Scratch,
+) {
     s.vectorize(
         #[inline(always)]
         || {
@@ -33,46 +41,82 @@ pub(crate) fn occlusion<S: Simd>(s: S, solid: &Solid<'_>, method: Occlusion, ran
     match method {
         Occlusion::None => {}
         Occlusion::Quilez { steps, step, scale } => quilez(s, solid, steps, step, scale, range, q),
-        Occlusion::Bent { steps, step, scale, bend } => bent(s, solid, steps, step, scale, bend, range, q),
+        Occlusion::Bent {
+            steps,
+            step,
+            scale,
+            bend,
+        } => bent(s, solid, steps, step, scale, bend, range, q),
         Occlusion::Evans { scale, step, bend } => evans(s, solid, scale, step, bend, range, q),
         Occlusion::Upward { scale } => upward(s, scale, range, q),
         Occlusion::Cones { reach, steps } => cones(s, solid, reach, steps, range, q),
         Occlusion::Hemisphere { rays, reach } => hemisphere(s, solid, Hard, rays, reach, range, q),
-        Occlusion::Obscurance { rays, reach, tau } => hemisphere(s, solid, Near { tau }, rays, reach, range, q),
+        Occlusion::Obscurance { rays, reach, tau } => {
+            hemisphere(s, solid, Near { tau }, rays, reach, range, q)
+        }
     }
 }
 
 /// Batches of a range: where each begins, and its size.
 fn batches(range: Range<usize>) -> impl Iterator<Item = (usize, usize)> {
-    range.clone().step_by(BATCH).map(move |k| (k, (range.end - k).min(BATCH)))
+    range
+        .clone()
+        .step_by(BATCH)
+        .map(move |k| (k, (range.end - k).min(BATCH)))
 }
 
 /// The value of the field at the sample, from the side of its hit.
 #[inline(always)]
 fn value<S: Simd>(s: S, q: &Scratch, k: usize, i: usize) -> Lanes<S> {
-    sided(load(s, &q.work.values().0, i), load_words(s, &q.hits.word, k + i))
+    sided(
+        load(s, &q.work.values().0, i),
+        load_words(s, &q.hits.word, k + i),
+    )
 }
 
 /// `1 - clamp(scale sum_k 2^-k (k dt - f(x + k dt n)), 0, 1)` (Tomczak 2012, algorithm 3.4 with the sum of equation 3.31).
 ///
 /// No sample can be closer to a surface than the farthest one plus the way between them, so every term is at most as large
 /// as the farthest sample's shortfall: where that is nothing, one sample is enough.
-fn quilez<S: Simd>(s: S, solid: &Solid<'_>, steps: u32, step: f32, scale: f32, range: Range<usize>, q: &mut Scratch) {
+fn quilez<S: Simd>(
+    s: S,
+    solid: &Solid<'_>,
+    steps: u32,
+    step: f32,
+    scale: f32,
+    range: Range<usize>,
+    q: &mut Scratch,
+) {
     s.vectorize(
         #[inline(always)]
         || {
             let far = steps as f32 * step;
             for (k, n) in batches(range.clone()) {
                 let hits = &q.hits;
-                sample(s, solid, n, &mut q.work, #[inline(always)] |i| {
-                    along(load3(s, &hits.point, k + i), load3(s, &hits.normal, k + i), splat(s, far))
-                });
+                sample(
+                    s,
+                    solid,
+                    n,
+                    &mut q.work,
+                    #[inline(always)]
+                    |i| {
+                        along(
+                            load3(s, &hits.point, k + i),
+                            load3(s, &hits.normal, k + i),
+                            splat(s, far),
+                        )
+                    },
+                );
                 q.counts.occlusion += n as u64;
                 for i in (0..n).step_by(S::f32s::LEN) {
                     let f = value(s, q, k, i);
                     store(-(f - far), &mut q.hits.open, k + i);
                     let radius = -(load(s, &q.hits.offset, k + i) - far);
-                    store(Lanes::select(f.below(radius), splat(s, 0.0), radius.max(0.0)), &mut q.hits.ball, k + i);
+                    store(
+                        Lanes::select(f.below(radius), splat(s, 0.0), radius.max(0.0)),
+                        &mut q.hits.ball,
+                        k + i,
+                    );
                 }
             }
             if steps < 2 {
@@ -83,7 +127,8 @@ fn quilez<S: Simd>(s: S, solid: &Solid<'_>, steps: u32, step: f32, scale: f32, r
             for at in range.clone().step_by(S::f32s::LEN) {
                 let (hits, beams) = (&mut q.hits, &mut *q.beams);
                 let short = load(s, &hits.open, at);
-                let more = Chosen::new((short * scale).above(NOTHING) & first_lanes(s, range.end - at));
+                let more =
+                    Chosen::new((short * scale).above(NOTHING) & first_lanes(s, range.end - at));
                 store(splat(s, 1.0), &mut hits.open, at);
                 if more.none() {
                     continue;
@@ -93,7 +138,11 @@ fn quilez<S: Simd>(s: S, solid: &Solid<'_>, steps: u32, step: f32, scale: f32, r
                 more.put3(load3(s, &hits.normal, at), &mut beams.direction, b);
                 more.put(short * 0.5f32.powi(steps as i32), &mut beams.light, b);
                 let side = load_words(s, &hits.word, at) & crate::simd::INSIDE;
-                let ordinal = S::u32s::from_fn(s, #[inline(always)] |k| (at + k) as u32);
+                let ordinal = S::u32s::from_fn(
+                    s,
+                    #[inline(always)]
+                    |k| (at + k) as u32,
+                );
                 more.put_words(ordinal | side, &mut beams.word, b);
                 beams.count += more.count;
                 if beams.count + S::f32s::LEN > BATCH {
@@ -113,13 +162,27 @@ fn nearer<S: Simd>(s: S, solid: &Solid<'_>, steps: u32, step: f32, scale: f32, q
     let n = q.beams.count;
     for k in 1..steps {
         let (far, beams) = (k as f32 * step, &*q.beams);
-        sample(s, solid, n, &mut q.work, #[inline(always)] |i| {
-            along(load3(s, &beams.origin, i), load3(s, &beams.direction, i), splat(s, far))
-        });
+        sample(
+            s,
+            solid,
+            n,
+            &mut q.work,
+            #[inline(always)]
+            |i| {
+                along(
+                    load3(s, &beams.origin, i),
+                    load3(s, &beams.direction, i),
+                    splat(s, far),
+                )
+            },
+        );
         q.counts.occlusion += n as u64;
         let weight = 0.5f32.powi(k as i32);
         for i in (0..n).step_by(S::f32s::LEN) {
-            let f = sided(load(s, &q.work.values().0, i), load_words(s, &q.beams.word, i));
+            let f = sided(
+                load(s, &q.work.values().0, i),
+                load_words(s, &q.beams.word, i),
+            );
             let sum = load(s, &q.beams.light, i) - (f - far) * weight;
             store(sum, &mut q.beams.light, i);
         }
@@ -158,11 +221,25 @@ fn bent<S: Simd>(
             for (k, n) in batches(range.clone()) {
                 q.hits.open[k..k + n].fill(0.0);
                 for j in 1..=steps {
-                    let (far, up) = (j as f32 * step, splat3(s, UP.map(|c| c * bend * (j - 1) as f32)));
+                    let (far, up) = (
+                        j as f32 * step,
+                        splat3(s, UP.map(|c| c * bend * (j - 1) as f32)),
+                    );
                     let hits = &q.hits;
-                    sample(s, solid, n, &mut q.work, #[inline(always)] |i| {
-                        along(load3(s, &hits.point, k + i), load3(s, &hits.normal, k + i) + up, splat(s, far))
-                    });
+                    sample(
+                        s,
+                        solid,
+                        n,
+                        &mut q.work,
+                        #[inline(always)]
+                        |i| {
+                            along(
+                                load3(s, &hits.point, k + i),
+                                load3(s, &hits.normal, k + i) + up,
+                                splat(s, far),
+                            )
+                        },
+                    );
                     q.counts.occlusion += n as u64;
                     let weight = 1.1f32.powi(-(j as i32));
                     for i in (0..n).step_by(S::f32s::LEN) {
@@ -182,7 +259,15 @@ pub(crate) const EVANS: [f32; 4] = [1.0, 1.2, 1.4, 1.8];
 
 /// `exp(-scale sum_i w_i (d_i - f(x + d_i n')))` with `n' = n + bend up` and `d_i` doubling (Evans 2006, 9.6; Tomczak 2012,
 /// equation 3.26 with its sign mended), not above 1.
-fn evans<S: Simd>(s: S, solid: &Solid<'_>, scale: f32, step: f32, bend: f32, range: Range<usize>, q: &mut Scratch) {
+fn evans<S: Simd>(
+    s: S,
+    solid: &Solid<'_>,
+    scale: f32,
+    step: f32,
+    bend: f32,
+    range: Range<usize>,
+    q: &mut Scratch,
+) {
     s.vectorize(
         #[inline(always)]
         || {
@@ -192,9 +277,20 @@ fn evans<S: Simd>(s: S, solid: &Solid<'_>, scale: f32, step: f32, bend: f32, ran
                 for (j, weight) in EVANS.into_iter().enumerate() {
                     let far = step * (1 << j) as f32;
                     let hits = &q.hits;
-                    sample(s, solid, n, &mut q.work, #[inline(always)] |i| {
-                        along(load3(s, &hits.point, k + i), load3(s, &hits.normal, k + i) + up, splat(s, far))
-                    });
+                    sample(
+                        s,
+                        solid,
+                        n,
+                        &mut q.work,
+                        #[inline(always)]
+                        |i| {
+                            along(
+                                load3(s, &hits.point, k + i),
+                                load3(s, &hits.normal, k + i) + up,
+                                splat(s, far),
+                            )
+                        },
+                    );
                     q.counts.occlusion += n as u64;
                     for i in (0..n).step_by(S::f32s::LEN) {
                         let sum = load(s, &q.hits.open, k + i) + (value(s, q, k, i) - far) * weight;
@@ -242,7 +338,11 @@ pub(crate) fn cone_directions() -> [[f32; 3]; 9] {
     let axis = v3(CONE_AXIS[0], CONE_AXIS[1], CONE_AXIS[2]);
     let [a, b] = crate::sampling::basis(axis);
     std::array::from_fn(|i| {
-        let (ring, at) = if i < 4 { (3.0, i as f32) } else { (5.0, i as f32 + 0.25) };
+        let (ring, at) = if i < 4 {
+            (3.0, i as f32)
+        } else {
+            (5.0, i as f32 + 0.25)
+        };
         let (sin, cos) = (at * std::f32::consts::TAU / ring).sin_cos();
         let c = CONE_COSINES[i];
         let r = (1.0 - c * c).sqrt();
@@ -253,7 +353,11 @@ pub(crate) fn cone_directions() -> [[f32; 3]; 9] {
 /// `w`, turned with the rotation that takes [`CONE_AXIS`] to `n` the shortest way.
 #[inline(always)]
 pub(crate) fn turn<R: Real<Scalar = f32>>(n: Vec3<R>, w: [f32; 3]) -> Vec3<R> {
-    let a = v3(n.x.lit(CONE_AXIS[0]), n.x.lit(CONE_AXIS[1]), n.x.lit(CONE_AXIS[2]));
+    let a = v3(
+        n.x.lit(CONE_AXIS[0]),
+        n.x.lit(CONE_AXIS[1]),
+        n.x.lit(CONE_AXIS[2]),
+    );
     let w = v3(n.x.lit(w[0]), n.x.lit(w[1]), n.x.lit(w[2]));
     let (v, c) = (a.cross(n), a.dot(n));
     let once = v.cross(w);
@@ -263,7 +367,14 @@ pub(crate) fn turn<R: Real<Scalar = f32>>(n: Vec3<R>, w: [f32; 3]) -> Vec3<R> {
 /// Nine cones over the hemisphere. A cone is open as far as the field at its samples is as large as the cone is wide there,
 /// or as large as over a bare plane, which so is open in full: `min_t f(x + w t) / (t min(tan, cos))`. (Distance field
 /// ambient occlusion, as in Aaltonen 2018.)
-fn cones<S: Simd>(s: S, solid: &Solid<'_>, reach: f32, steps: u32, range: Range<usize>, q: &mut Scratch) {
+fn cones<S: Simd>(
+    s: S,
+    solid: &Solid<'_>,
+    reach: f32,
+    steps: u32,
+    range: Range<usize>,
+    q: &mut Scratch,
+) {
     s.vectorize(
         #[inline(always)]
         || {
@@ -278,15 +389,24 @@ fn cones<S: Simd>(s: S, solid: &Solid<'_>, reach: f32, steps: u32, range: Range<
                     let mut origin = [Lane::ZERO; 3];
                     for i in (0..n).step_by(S::f32s::LEN) {
                         let normal = load3(s, &q.hits.normal, k + i);
-                        let from = along(load3(s, &q.hits.point, k + i), normal, load(s, &q.hits.offset, k + i));
+                        let from = along(
+                            load3(s, &q.hits.point, k + i),
+                            normal,
+                            load(s, &q.hits.offset, k + i),
+                        );
                         store3(from, &mut origin, i);
                         store3(turn(normal, w), &mut to, i);
                     }
                     let mut t = reach;
                     for step in 0..steps {
-                        sample(s, solid, n, &mut q.work, #[inline(always)] |i| {
-                            along(load3(s, &origin, i), load3(s, &to, i), splat(s, t))
-                        });
+                        sample(
+                            s,
+                            solid,
+                            n,
+                            &mut q.work,
+                            #[inline(always)]
+                            |i| along(load3(s, &origin, i), load3(s, &to, i), splat(s, t)),
+                        );
                         q.counts.occlusion += n as u64;
                         if step == 0 && cosine == 1.0 {
                             for i in (0..n).step_by(S::f32s::LEN) {
@@ -306,7 +426,11 @@ fn cones<S: Simd>(s: S, solid: &Solid<'_>, reach: f32, steps: u32, range: Range<
                     for i in (0..n).step_by(S::f32s::LEN) {
                         let share = load(s, &least.0, i) * cosine;
                         store(load(s, &open.0, i) + share, &mut open.0, i);
-                        store3(along(load3(s, &bent, i), load3(s, &to, i), share), &mut bent, i);
+                        store3(
+                            along(load3(s, &bent, i), load3(s, &to, i), share),
+                            &mut bent,
+                            i,
+                        );
                     }
                 }
                 for i in (0..n).step_by(S::f32s::LEN) {
@@ -335,7 +459,14 @@ impl<S: Simd> Penumbra<S> for Near {
         0.0
     }
     #[inline(always)]
-    fn darken(self, light: Lanes<S>, _f: Lanes<S>, _t: Lanes<S>, _z: Lanes<S>, _r: Lanes<S>) -> Lanes<S> {
+    fn darken(
+        self,
+        light: Lanes<S>,
+        _f: Lanes<S>,
+        _t: Lanes<S>,
+        _z: Lanes<S>,
+        _r: Lanes<S>,
+    ) -> Lanes<S> {
         light
     }
     #[inline(always)]
@@ -361,14 +492,25 @@ impl<S: Simd> Aim<S> for Around<'_> {
         None
     }
     #[inline(always)]
-    fn direction(&self, at: usize, origin: Vec3<Lanes<S>>, normal: Vec3<Lanes<S>>) -> (Vec3<Lanes<S>>, Lanes<S>) {
+    fn direction(
+        &self,
+        at: usize,
+        origin: Vec3<Lanes<S>>,
+        normal: Vec3<Lanes<S>>,
+    ) -> (Vec3<Lanes<S>>, Lanes<S>) {
         let s = origin.x.0.token();
         let point = sobol(self.index);
         let u: S::u32s = (load_words(s, &self.scramble[0], at) ^ point[0]) >> 8;
         let v: S::u32s = (load_words(s, &self.scramble[1], at) ^ point[1]) >> 8;
-        let (u, v) = (Lanes::<S>(u.to_float::<S::f32s>()), Lanes::<S>(v.to_float::<S::f32s>()));
+        let (u, v) = (
+            Lanes::<S>(u.to_float::<S::f32s>()),
+            Lanes::<S>(v.to_float::<S::f32s>()),
+        );
         let unit = 1.0 / 16_777_216.0;
-        (cosine_direction(normal, u * unit, v * unit), splat(s, self.reach))
+        (
+            cosine_direction(normal, u * unit, v * unit),
+            splat(s, self.reach),
+        )
     }
 }
 
@@ -386,9 +528,16 @@ fn hemisphere<S: Simd, P: Penumbra<S>>(
     q.hits.open[range.clone()].fill(0.0);
     let scramble = std::mem::take(&mut q.scramble);
     for index in 0..rays {
-        let aim = Around { index, reach, scramble: &scramble };
+        let aim = Around {
+            index,
+            reach,
+            scramble: &scramble,
+        };
         q.counts.occlusion += stream(s, kind, &aim, solid, range.clone(), q);
-        for (open, lit) in q.hits.open[range.clone()].iter_mut().zip(&q.hits.lit[range.clone()]) {
+        for (open, lit) in q.hits.open[range.clone()]
+            .iter_mut()
+            .zip(&q.hits.lit[range.clone()])
+        {
             *open += lit / rays as f32;
         }
     }

@@ -6,9 +6,12 @@
 //! `w = light / sharpness` of the penumbra that still matters. For hard shadows `w` is zero and this is the step of `auto`.
 //! The slope is known at the start: it is the cosine between the normal and the ray.
 
-use crate::marcher::Rough;
 use crate::march::{ITERATIONS, ORDINAL, ORDINAL_BITS, age};
-use crate::simd::{Chosen, INSIDE, along, first_lanes, load, load_words, load3, sided, splat, splat3, store, store3};
+use crate::marcher::Rough;
+use crate::simd::{
+    Chosen, INSIDE, along, first_lanes, load, load_words, load3, sided, splat, splat3, store,
+    store3,
+};
 use crate::tile::{Beams, Scratch, Solid};
 use fearless_simd::{Simd, prelude::*};
 use std::ops::Range;
@@ -35,7 +38,14 @@ pub(crate) trait Penumbra<S: Simd>: Copy {
     fn width(self) -> f32;
     /// What is left of the light after a sample `f` at `t`, a step of `z` behind one of radius `r`. Where there is no
     /// penumbra, `light` is the value of the field that stops a ray, and stays.
-    fn darken(self, light: Lanes<S>, f: Lanes<S>, t: Lanes<S>, z: Lanes<S>, r: Lanes<S>) -> Lanes<S>;
+    fn darken(
+        self,
+        light: Lanes<S>,
+        f: Lanes<S>,
+        t: Lanes<S>,
+        z: Lanes<S>,
+        r: Lanes<S>,
+    ) -> Lanes<S>;
     /// Whether no light is left.
     fn dark(self, light: Lanes<S>, f: Lanes<S>) -> LaneMask<S>;
     /// What counts as light for a ray that was stopped at `t`.
@@ -50,7 +60,12 @@ pub(crate) trait Aim<S: Simd> {
     /// The direction of all rays, if they have one in common.
     fn common(&self) -> Option<[f32; 3]>;
     /// Direction, and the distance at which a ray ends, for the hits from `at` on.
-    fn direction(&self, at: usize, origin: Vec3<Lanes<S>>, normal: Vec3<Lanes<S>>) -> (Vec3<Lanes<S>>, Lanes<S>);
+    fn direction(
+        &self,
+        at: usize,
+        origin: Vec3<Lanes<S>>,
+        normal: Vec3<Lanes<S>>,
+    ) -> (Vec3<Lanes<S>>, Lanes<S>);
 }
 
 /// Finds how much reaches each hit of the range, into `lit`: 0 where the surface faces away. Returns the evaluations.
@@ -114,9 +129,17 @@ fn start<S: Simd, P: Penumbra<S>, A: Aim<S>>(
         return;
     }
     let n = beams.count;
-    let end = solid.region.leave(origin, to, splat(s, penumbra.width()), offset).min(distance).min(solid.view.far);
+    let end = solid
+        .region
+        .leave(origin, to, splat(s, penumbra.width()), offset)
+        .min(distance)
+        .min(solid.view.far);
     let side = load_words(s, &hits.word, at) & INSIDE;
-    let ordinal = S::u32s::from_fn(s, #[inline(always)] |k| (at + k) as u32);
+    let ordinal = S::u32s::from_fn(
+        s,
+        #[inline(always)]
+        |k| (at + k) as u32,
+    );
     let word = ordinal | side | (iteration & ITERATIONS) << ORDINAL_BITS;
     begin.put3(origin, &mut beams.origin, n);
     if aim.common().is_none() {
@@ -125,12 +148,21 @@ fn start<S: Simd, P: Penumbra<S>, A: Aim<S>>(
     // within a ball of radius a whose middle lies a above the origin the field at t is nowhere below a - |t to - a normal|,
     // which is more than the penumbra's w t up to 2 a (cosine - w) / (1 - w^2)
     let w = penumbra.width();
-    let free = load(s, &hits.ball, at) * (cosine - w) * if w < 1.0 { 2.0 / (1.0 - w * w) } else { 0.0 };
+    let free =
+        load(s, &hits.ball, at) * (cosine - w) * if w < 1.0 { 2.0 / (1.0 - w * w) } else { 0.0 };
     begin.put((offset * FIRST).max(free).min(end), &mut beams.t, n);
     store(splat(s, 0.0), &mut beams.z, n);
     store(splat(s, 0.0), &mut beams.r, n);
     begin.put(cosine, &mut beams.m, n);
-    begin.put(if P::HARD { offset * STOP } else { splat(s, 1.0) }, &mut beams.light, n);
+    begin.put(
+        if P::HARD {
+            offset * STOP
+        } else {
+            splat(s, 1.0)
+        },
+        &mut beams.light,
+        n,
+    );
     begin.put(end, &mut beams.end, n);
     begin.put_words(word, &mut beams.word, n);
     beams.count += begin.count;
@@ -145,7 +177,11 @@ fn sample<S: Simd, A: Aim<S>>(s: S, aim: &A, solid: &Solid<'_>, q: &mut Scratch)
             Some(direction) => splat3(s, direction),
             None => load3(s, &beams.direction, i),
         };
-        let at = along(load3(s, &beams.origin, i), d, load(s, &beams.t, i) + load(s, &beams.z, i));
+        let at = along(
+            load3(s, &beams.origin, i),
+            d,
+            load(s, &beams.t, i) + load(s, &beams.z, i),
+        );
         store3(at, points, i);
     }
     eval::values(s, solid.program, &mut q.work, beams.count);
@@ -161,10 +197,22 @@ fn advance<S: Simd, P: Penumbra<S>>(s: S, penumbra: P, aimed: bool, q: &mut Scra
         let live = first_lanes(s, count - i);
         let word = load_words(s, &beams.word, i);
         let f = sided(load(s, &values.0, i), word);
-        let (t, z, r) = (load(s, &beams.t, i), load(s, &beams.z, i), load(s, &beams.r, i));
-        let (m, light, end) = (load(s, &beams.m, i), load(s, &beams.light, i), load(s, &beams.end, i));
+        let (t, z, r) = (
+            load(s, &beams.t, i),
+            load(s, &beams.z, i),
+            load(s, &beams.r, i),
+        );
+        let (m, light, end) = (
+            load(s, &beams.m, i),
+            load(s, &beams.light, i),
+            load(s, &beams.end, i),
+        );
         let to = t + z;
-        let wide = if P::HARD { splat(s, 0.0) } else { light * width };
+        let wide = if P::HARD {
+            splat(s, 0.0)
+        } else {
+            light * width
+        };
         // whether anything between the samples can matter
         let gap = z.above(r) & ((r + f - z) * 0.5).below(wide * to);
         let rise = ((f - r) * z.max(1e-20).rough_recip()).clamp(-1.0, 1.0);
@@ -183,7 +231,11 @@ fn advance<S: Simd, P: Penumbra<S>>(s: S, penumbra: P, aimed: bool, q: &mut Scra
         if on.count < S::f32s::LEN {
             let done = Chosen::new(live & (dark | !within));
             let left = if P::HARD { splat(s, 1.0) } else { darker };
-            done.put(Lanes::select(dark, penumbra.stopped(t), left), &mut ended.light, ended.count);
+            done.put(
+                Lanes::select(dark, penumbra.stopped(t), left),
+                &mut ended.light,
+                ended.count,
+            );
             done.put_words(word, &mut ended.word, ended.count);
             ended.count += done.count;
             if on.none() {
@@ -210,10 +262,19 @@ fn advance<S: Simd, P: Penumbra<S>>(s: S, penumbra: P, aimed: bool, q: &mut Scra
 
 /// Takes out the rays that ran out of steps: they have the light that is left.
 #[inline(always)]
-fn retire<S: Simd, P: Penumbra<S>>(_s: S, _penumbra: P, max_steps: u32, iteration: u32, q: &mut Scratch) {
+fn retire<S: Simd, P: Penumbra<S>>(
+    _s: S,
+    _penumbra: P,
+    max_steps: u32,
+    iteration: u32,
+    q: &mut Scratch,
+) {
     let (beams, ended) = (&mut *q.beams, &mut q.ended);
     let old = |w: &u32| age(*w, iteration) >= max_steps;
-    let spent = beams.word[..beams.count].iter().take_while(|w| old(w)).count();
+    let spent = beams.word[..beams.count]
+        .iter()
+        .take_while(|w| old(w))
+        .count();
     for i in 0..spent {
         ended.light[ended.count] = if P::HARD { 1.0 } else { beams.light[i] };
         ended.word[ended.count] = beams.word[i];
@@ -228,7 +289,14 @@ impl Beams {
     fn remove_first(&mut self, n: usize) {
         let rest = n..self.count;
         let columns = self.origin.iter_mut().chain(&mut self.direction);
-        let columns = columns.chain([&mut self.t, &mut self.z, &mut self.r, &mut self.m, &mut self.light, &mut self.end]);
+        let columns = columns.chain([
+            &mut self.t,
+            &mut self.z,
+            &mut self.r,
+            &mut self.m,
+            &mut self.light,
+            &mut self.end,
+        ]);
         for column in columns {
             column.copy_within(rest.clone(), 0);
         }

@@ -17,13 +17,21 @@ fn shape(name: &str, params: &[f64]) -> Field {
 }
 
 fn object(name: &str, field: Field) -> Object {
-    Object { name: name.into(), field, material: 0, occlusion: None, place: None }
+    Object {
+        name: name.into(),
+        field,
+        material: 0,
+        occlusion: None,
+        place: None,
+    }
 }
 
 /// Tomczak's sphere, box and ground.
 pub fn sphere_box_ground() -> Scene {
     let at = |f: Field, p: [f64; 3]| f.place(Placement::moved(p)).expect("a place");
-    let lens = Lens::Pinhole { fov: 40f32.to_radians() };
+    let lens = Lens::Pinhole {
+        fov: 40f32.to_radians(),
+    };
     Scene {
         name: "sphere-box-ground".into(),
         objects: vec![
@@ -33,12 +41,20 @@ pub fn sphere_box_ground() -> Scene {
         ],
         materials: vec![Material::default()],
         lights: vec![Light {
-            source: Source::Directional { direction: Vec3::new(-0.6, -0.9, -0.35).normalize() },
+            source: Source::Directional {
+                direction: Vec3::new(-0.6, -0.9, -0.35).normalize(),
+            },
             radiance: Vec3::new(1.0, 0.96, 0.9),
             shadow: Shadow::Soft { sharpness: 16.0 },
         }],
         sky: Sky::default(),
-        camera: Camera::look_at(Vec3::new(2.5, 2.2, 4.0), Vec3::new(0.1, 0.6, 0.0), Vec3::Y, lens).expect("a view"),
+        camera: Camera::look_at(
+            Vec3::new(2.5, 2.2, 4.0),
+            Vec3::new(0.1, 0.6, 0.0),
+            Vec3::Y,
+            lens,
+        )
+        .expect("a view"),
         settings: Settings::default(),
     }
 }
@@ -46,16 +62,26 @@ pub fn sphere_box_ground() -> Scene {
 /// A city of boxes on a grid with varied heights.
 pub fn city() -> Scene {
     let tower = shape("box", &[0.62, 2.0, 0.62]);
-    let repetition = Repetition { spacing: [1.0, 0.0, 1.0], count: [24, 0, 24], vary: [0.0, 0.9, 0.0], seed: 1 };
+    let repetition = Repetition {
+        spacing: [1.0, 0.0, 1.0],
+        count: [24, 0, 24],
+        vary: [0.0, 0.9, 0.0],
+        seed: 1,
+    };
     let towers = tower.repeat(repetition).expect("a grid");
     Scene {
         name: "city".into(),
-        objects: vec![object("towers", towers), object("ground", shape("plane", &[]))],
+        objects: vec![
+            object("towers", towers),
+            object("ground", shape("plane", &[])),
+        ],
         camera: Camera::look_at(
             Vec3::new(9.0, 5.0, 13.0),
             Vec3::new(0.0, 0.0, 0.0),
             Vec3::Y,
-            Lens::Pinhole { fov: 45f32.to_radians() },
+            Lens::Pinhole {
+                fov: 45f32.to_radians(),
+            },
         )
         .expect("a view"),
         ..sphere_box_ground()

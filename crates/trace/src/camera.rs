@@ -21,7 +21,6 @@ impl Linear {
     pub(crate) fn at<R: Real<Scalar = f32>>(self, t: R) -> R {
         t * self.slope + self.constant
     }
-
 }
 
 /// A camera with a picture size: what turns pixels into rays.
@@ -55,10 +54,16 @@ impl View {
         let scale = camera.plane_height() / height as f32;
         let half = [0.5 * width as f32, 0.5 * height as f32];
         let pinhole = matches!(camera.lens, Lens::Pinhole { .. });
-        let aside = if pinhole { 0.0 } else { scale * half[0].hypot(half[1]) };
+        let aside = if pinhole {
+            0.0
+        } else {
+            scale * half[0].hypot(half[1])
+        };
         let threshold = Linear {
             slope: footprint * slope + ROUNDING,
-            constant: (footprint * constant).max(ROUNDING * (camera.eye.length() + aside)).max(f32::MIN_POSITIVE),
+            constant: (footprint * constant)
+                .max(ROUNDING * (camera.eye.length() + aside))
+                .max(f32::MIN_POSITIVE),
         };
         View {
             pinhole,
@@ -79,7 +84,10 @@ impl View {
     /// scene (orthographic).
     #[inline(always)]
     fn plane<R: Real<Scalar = f32>>(&self, x: R, y: R) -> (R, R) {
-        ((x - self.half[0]) * self.scale, -(y - self.half[1]) * self.scale)
+        (
+            (x - self.half[0]) * self.scale,
+            -(y - self.half[1]) * self.scale,
+        )
     }
 
     /// What of the ray through (`x`, `y`) pixels differs from ray to ray: the direction (pinhole) or the origin.
@@ -89,14 +97,20 @@ impl View {
         if self.pinhole {
             self.slant(u, v).normalize()
         } else {
-            each(#[inline(always)] |k| u * self.right[k] + v * self.up[k] + self.eye[k])
+            each(
+                #[inline(always)]
+                |k| u * self.right[k] + v * self.up[k] + self.eye[k],
+            )
         }
     }
 
     /// The direction through (`u`, `v`) on the plane at distance 1, not normalised.
     #[inline(always)]
     fn slant<R: Real<Scalar = f32>>(&self, u: R, v: R) -> Vec3<R> {
-        each(#[inline(always)] |k| u * self.right[k] + v * self.up[k] - self.back[k])
+        each(
+            #[inline(always)]
+            |k| u * self.right[k] + v * self.up[k] - self.back[k],
+        )
     }
 
     /// Origin and direction from what [`View::ray`] gave.
@@ -143,8 +157,20 @@ impl Region {
     /// The smallest such box of single precision numbers.
     pub(crate) fn new(bounds: &Aabb) -> Region {
         Region {
-            min: bounds.min.map(|x| if f64::from(x as f32) > x { (x as f32).next_down() } else { x as f32 }),
-            max: bounds.max.map(|x| if f64::from(x as f32) < x { (x as f32).next_up() } else { x as f32 }),
+            min: bounds.min.map(|x| {
+                if f64::from(x as f32) > x {
+                    (x as f32).next_down()
+                } else {
+                    x as f32
+                }
+            }),
+            max: bounds.max.map(|x| {
+                if f64::from(x as f32) < x {
+                    (x as f32).next_up()
+                } else {
+                    x as f32
+                }
+            }),
         }
     }
 
@@ -153,7 +179,13 @@ impl Region {
     /// Beyond the plane of one side, the distance to the box grows by the cosine `c` to that side and is at least
     /// `c t - d`, with `d` the distance to the plane at the start.
     #[inline(always)]
-    pub(crate) fn leave<R: Real<Scalar = f32>>(&self, o: Vec3<R>, d: Vec3<R>, slope: R, constant: R) -> R {
+    pub(crate) fn leave<R: Real<Scalar = f32>>(
+        &self,
+        o: Vec3<R>,
+        d: Vec3<R>,
+        slope: R,
+        constant: R,
+    ) -> R {
         let mut end = o.x.lit(f32::INFINITY);
         let (o, d) = (o.array(), d.array());
         for k in 0..3 {
@@ -168,7 +200,13 @@ impl Region {
 
     /// Up to this `t` the ray is farther from the box than `slope * t + constant`. Zero where it starts near it.
     #[inline(always)]
-    pub(crate) fn enter<R: Real<Scalar = f32>>(&self, o: Vec3<R>, d: Vec3<R>, slope: R, constant: R) -> R {
+    pub(crate) fn enter<R: Real<Scalar = f32>>(
+        &self,
+        o: Vec3<R>,
+        d: Vec3<R>,
+        slope: R,
+        constant: R,
+    ) -> R {
         let mut start = o.x.lit(0.0);
         let (o, d) = (o.array(), d.array());
         for k in 0..3 {
@@ -183,12 +221,17 @@ impl Region {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use zeroset_field::number::v3;
     use glam::Vec3 as G;
+    use zeroset_field::number::v3;
 
     fn cameras() -> [Camera; 2] {
-        let lens = [Lens::Pinhole { fov: 0.8 }, Lens::Orthographic { height: 3.0 }];
-        lens.map(|l| Camera::look_at(G::new(3.0, 2.0, 4.0), G::new(0.0, 0.5, 0.0), G::Y, l).expect("a view"))
+        let lens = [
+            Lens::Pinhole { fov: 0.8 },
+            Lens::Orthographic { height: 3.0 },
+        ];
+        lens.map(|l| {
+            Camera::look_at(G::new(3.0, 2.0, 4.0), G::new(0.0, 0.5, 0.0), G::Y, l).expect("a view")
+        })
     }
 
     #[test]
@@ -198,7 +241,10 @@ mod tests {
             for (x, y) in [(0.0, 0.0), (64.0, 48.0), (12.25, 40.5)] {
                 let (o, d) = view.split(view.ray(x, y));
                 let (p, q) = camera.ray(x, y, [64, 48]);
-                assert!((G::from(o.array()) - p).length() < 1e-5 && (G::from(d.array()) - q).length() < 1e-6);
+                assert!(
+                    (G::from(o.array()) - p).length() < 1e-5
+                        && (G::from(d.array()) - q).length() < 1e-6
+                );
             }
         }
     }
@@ -211,12 +257,22 @@ mod tests {
                 let (slope, constant) = view.cone(x, y, 4.0f32);
                 let (o, d) = view.split(view.ray(x, y));
                 let mut widest = 0.0f32;
-                for (dx, dy) in [(-4.0, -4.0), (4.0, -4.0), (-4.0, 4.0), (4.0, 4.0), (0.0, 4.0), (1.5, -2.0)] {
+                for (dx, dy) in [
+                    (-4.0, -4.0),
+                    (4.0, -4.0),
+                    (-4.0, 4.0),
+                    (4.0, 4.0),
+                    (0.0, 4.0),
+                    (1.5, -2.0),
+                ] {
                     let (p, q) = view.split(view.ray(x + dx, y + dy));
                     for t in [0.1, 1.0, 7.0] {
                         let axis = G::from(o.array()) + G::from(d.array()) * t;
                         let side = (G::from(p.array()) + G::from(q.array()) * t - axis).length();
-                        assert!(side <= (slope * t + constant) * 1.0001 + 1e-6, "at ({x}, {y})");
+                        assert!(
+                            side <= (slope * t + constant) * 1.0001 + 1e-6,
+                            "at ({x}, {y})"
+                        );
                         widest = widest.max(side / (slope * t + constant));
                     }
                 }
@@ -240,15 +296,23 @@ mod tests {
         for i in 0..2000 {
             let h = |k: i32| ((i * 7919 + k * 104_729) % 2003) as f32 / 1001.5 - 1.0;
             let o = G::new(h(1), h(2), h(3)) * 4.0;
-            let Some(d) = G::new(h(4), h(5), h(6)).try_normalize() else { continue };
+            let Some(d) = G::new(h(4), h(5), h(6)).try_normalize() else {
+                continue;
+            };
             let (slope, constant) = (0.1 * h(7).abs(), 0.05 * h(8).abs());
             let (a, b) = (v3(o.x, o.y, o.z), v3(d.x, d.y, d.z));
-            let (start, end) = (region.enter(a, b, slope, constant), region.leave(a, b, slope, constant));
+            let (start, end) = (
+                region.enter(a, b, slope, constant),
+                region.leave(a, b, slope, constant),
+            );
             finite += u32::from(end.is_finite());
             for k in 0..200 {
                 let t = 0.1 * k as f32;
                 if t < start * 0.999 || t > end * 1.001 + 1e-4 {
-                    assert!(outside(o + d * t) > slope * t + constant - 1e-4, "t {t}, {start} to {end}");
+                    assert!(
+                        outside(o + d * t) > slope * t + constant - 1e-4,
+                        "t {t}, {start} to {end}"
+                    );
                 }
             }
         }

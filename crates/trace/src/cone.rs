@@ -29,7 +29,14 @@ const STEPS: u32 = 64;
 /// Finds where the rays of every pixel of the tile start and end, and the slope of the field along them.
 ///
 /// `reach` is how far rays go through a pixel from its middle, in pixels.
-pub(crate) fn prepass<S: Simd>(s: S, solid: &Solid<'_>, area: &Area, reach: f32, march: Option<March>, q: &mut Scratch) {
+pub(crate) fn prepass<S: Simd>(
+    s: S,
+    solid: &Solid<'_>,
+    area: &Area,
+    reach: f32,
+    march: Option<March>,
+    q: &mut Scratch,
+) {
     q.parents.start[..TILE_TOP].fill(0.0);
     q.parents.end[..TILE_TOP].fill(f32::INFINITY);
     q.parents.slope[..TILE_TOP].fill(-1.0);
@@ -39,7 +46,12 @@ pub(crate) fn prepass<S: Simd>(s: S, solid: &Solid<'_>, area: &Area, reach: f32,
     for &side in sides {
         let count = WIDTH / side * (HEIGHT / side);
         expand(s, above / side, count, q);
-        let cells = Cells { solid, area, side, reach: 0.5 * (side as f32 - 1.0) + reach };
+        let cells = Cells {
+            solid,
+            area,
+            side,
+            reach: 0.5 * (side as f32 - 1.0) + reach,
+        };
         let width = enclose(s, &cells, count, q);
         match march {
             Some(March::Auto { beta }) => run(s, Auto { beta }, &cells, width, count, q),
@@ -135,18 +147,35 @@ fn enclose<S: Simd>(s: S, cells: &Cells<'_>, count: usize, q: &mut Scratch) -> L
     s.vectorize(
         #[inline(always)]
         || {
-            let mut widest = Linear { slope: 0.0, constant: 0.0 };
+            let mut widest = Linear {
+                slope: 0.0,
+                constant: 0.0,
+            };
             for i in (0..count).step_by(S::f32s::LEN) {
                 let (x, y) = cells.middle(s, i);
                 let (slope, constant) = view.cone(x, y, cells.reach);
                 widest.slope = widest.slope.max(slope.0.reduce_max());
                 widest.constant = constant;
                 let (o, d) = view.split(view.ray(x, y));
-                let (slope, constant) =
-                    (slope + view.threshold.slope, splat(s, constant + view.threshold.constant));
-                let start = region.enter(o, d, slope, constant).max(view.near).max(load(s, &q.spans.start, i));
-                let end = region.leave(o, d, slope, constant).min(view.far).min(load(s, &q.spans.end, i));
-                store(Lanes::select(start.below(end), start, splat(s, f32::INFINITY)), &mut q.spans.start, i);
+                let (slope, constant) = (
+                    slope + view.threshold.slope,
+                    splat(s, constant + view.threshold.constant),
+                );
+                let start = region.enter(o, d, slope, constant).max(view.near).max(load(
+                    s,
+                    &q.spans.start,
+                    i,
+                ));
+                let end =
+                    region
+                        .leave(o, d, slope, constant)
+                        .min(view.far)
+                        .min(load(s, &q.spans.end, i));
+                store(
+                    Lanes::select(start.below(end), start, splat(s, f32::INFINITY)),
+                    &mut q.spans.start,
+                    i,
+                );
                 store(end, &mut q.spans.end, i);
             }
             widest
@@ -154,7 +183,14 @@ fn enclose<S: Simd>(s: S, cells: &Cells<'_>, count: usize, q: &mut Scratch) -> L
     )
 }
 
-fn run<S: Simd, M: Marcher>(s: S, marcher: M, cells: &Cells<'_>, width: Linear, count: usize, q: &mut Scratch) {
+fn run<S: Simd, M: Marcher>(
+    s: S,
+    marcher: M,
+    cells: &Cells<'_>,
+    width: Linear,
+    count: usize,
+    q: &mut Scratch,
+) {
     let share = 1.0 / (1.0 + width.slope);
     let how = Stream {
         solid: cells.solid,
@@ -169,7 +205,17 @@ fn run<S: Simd, M: Marcher>(s: S, marcher: M, cells: &Cells<'_>, width: Linear, 
     q.next.start[..count].fill(f32::INFINITY);
     q.next.end[..count].copy_from_slice(&q.spans.end[..count]);
     let mut found = Found { spans: &mut q.next };
-    q.counts.prepass += stream(s, marcher, &how, cells, &q.spans, count, &mut q.rays, &mut q.work, &mut found);
+    q.counts.prepass += stream(
+        s,
+        marcher,
+        &how,
+        cells,
+        &q.spans,
+        count,
+        &mut q.rays,
+        &mut q.work,
+        &mut found,
+    );
     std::mem::swap(&mut q.spans, &mut q.next);
 }
 
@@ -190,7 +236,13 @@ impl<S: Simd> Sink<S> for Found<'_> {
             let cell = (word & ORDINAL) as usize;
             self.spans.start[cell] = at.t.0.as_slice()[k];
             self.spans.slope[cell] = at.m.0.as_slice()[k];
-            self.spans.radius[cell] = f32::from_bits(free.0.as_slice()[k].to_bits() | word & INSIDE);
+            // a cone that found no room tells nothing of the side that its rays are on
+            let radius = free.0.as_slice()[k];
+            self.spans.radius[cell] = if word & INSIDE != 0 && radius > 0.0 {
+                -radius
+            } else {
+                radius
+            };
             bits &= bits - 1;
         }
     }
@@ -198,6 +250,10 @@ impl<S: Simd> Sink<S> for Found<'_> {
     fn left(&mut self, _gone: LaneMask<S>, _at: &Arrived<S>) {}
     fn spent(&mut self, rays: &Rays, i: usize) {
         let cell = (rays.word[i] & ORDINAL) as usize;
-        (self.spans.start[cell], self.spans.slope[cell], self.spans.radius[cell]) = (rays.t[i], -1.0, 0.0);
+        (
+            self.spans.start[cell],
+            self.spans.slope[cell],
+            self.spans.radius[cell],
+        ) = (rays.t[i], -1.0, 0.0);
     }
 }

@@ -45,7 +45,11 @@ impl<'a> Job<'a> {
         };
         Job {
             picture,
-            view: View::new(&picture.scene.camera, [film.width(), film.height()], settings.footprint),
+            view: View::new(
+                &picture.scene.camera,
+                [film.width(), film.height()],
+                settings.footprint,
+            ),
             wanted,
             samples,
             plan: Plan {
@@ -53,7 +57,9 @@ impl<'a> Job<'a> {
                 select: settings.hit_selection,
                 steps: wanted[Plane::Steps as usize],
             },
-            marks: picture.material.is_none() || (objects && picture.object.is_none()),
+            marks: picture.material.is_none()
+                || picture.has_orbits
+                || (objects && picture.object.is_none()),
             fallback: Material::default(),
         }
     }
@@ -73,7 +79,13 @@ impl<'a> Job<'a> {
     }
 
     /// Renders a tile into the scratch memory; where samples are filtered, their colours into `sums`.
-    pub(crate) fn tile<S: Simd>(&self, s: S, area: &Area, sums: &mut [f32], q: &mut Scratch) -> Done {
+    pub(crate) fn tile<S: Simd>(
+        &self,
+        s: S,
+        area: &Area,
+        sums: &mut [f32],
+        q: &mut Scratch,
+    ) -> Done {
         let solid = Solid {
             program: &self.picture.program,
             region: self.picture.region,
@@ -92,7 +104,11 @@ impl<'a> Job<'a> {
             }
         }
         let rays = (area.width * area.height) as u64 * u64::from(self.samples());
-        Done { rays, hits, evaluations: q.counts }
+        Done {
+            rays,
+            hits,
+            evaluations: q.counts,
+        }
     }
 
     /// Chooses where in their pixels the rays of sample number `index` go through.
@@ -103,7 +119,11 @@ impl<'a> Job<'a> {
             return;
         }
         for i in 0..WIDTH * HEIGHT {
-            let key = scramble(area.x as u32 + order::X[i] as u32, area.y as u32 + order::Y[i] as u32, seed);
+            let key = scramble(
+                area.x as u32 + order::X[i] as u32,
+                area.y as u32 + order::Y[i] as u32,
+                seed,
+            );
             let place = point(index, key);
             for k in 0..2 {
                 q.jitter[k][i] = place[k];
@@ -117,18 +137,34 @@ impl<'a> Job<'a> {
         let settings = &self.picture.scene.settings;
         if index == 0 {
             let reach = if self.samples.is_some() { 0.5 } else { 0.0 };
-            cone::prepass(s, solid, area, reach, settings.prepass.then_some(settings.march), q);
+            cone::prepass(
+                s,
+                solid,
+                area,
+                reach,
+                settings.prepass.then_some(settings.march),
+                q,
+            );
         }
         if self.plan.steps {
             q.steps.fill(0.0);
         }
         march(s, &self.plan, solid, area, q);
-        place(s, solid, settings.discontinuity_reduction, self.wants(Plane::Residual), q);
+        place(
+            s,
+            solid,
+            settings.discontinuity_reduction,
+            self.wants(Plane::Residual),
+            q,
+        );
         normals(s, solid, settings.normals, q);
         if self.marks {
             marks(s, solid, q);
         } else {
-            let (object, material) = (self.picture.object.unwrap_or(0), self.picture.material.unwrap_or(0));
+            let (object, material) = (
+                self.picture.object.unwrap_or(0),
+                self.picture.material.unwrap_or(0),
+            );
             let n = q.hits.count;
             q.hits.object[..n].fill(f32::from(object));
             q.hits.first[..n].fill(f32::from(material));
@@ -142,7 +178,12 @@ impl<'a> Job<'a> {
     /// Finds the ambient visibility, object by object where they chose different methods.
     fn occlude<S: Simd>(&self, s: S, solid: &Solid<'_>, area: &Area, index: u32, q: &mut Scratch) {
         let methods = &self.picture.methods;
-        let random = |m: &Occlusion| matches!(m, Occlusion::Hemisphere { .. } | Occlusion::Obscurance { .. });
+        let random = |m: &Occlusion| {
+            matches!(
+                m,
+                Occlusion::Hemisphere { .. } | Occlusion::Obscurance { .. }
+            )
+        };
         if methods.len() > 1 {
             q.hits.sort_by_method(&self.picture.method_of);
         }
@@ -150,7 +191,10 @@ impl<'a> Job<'a> {
             let seed = self.picture.scene.settings.seed;
             for i in 0..q.hits.count {
                 let pixel = (q.hits.word[i] & ORDINAL) as usize;
-                let (x, y) = (area.x as u32 + order::X[pixel] as u32, area.y as u32 + order::Y[pixel] as u32);
+                let (x, y) = (
+                    area.x as u32 + order::X[pixel] as u32,
+                    area.y as u32 + order::Y[pixel] as u32,
+                );
                 // not the random numbers of the pixel's samples
                 let key = scramble(x, y, seed ^ (index + 1).wrapping_mul(0x9e37_79b9));
                 (q.scramble[0][i], q.scramble[1][i]) = (key[0], key[1]);
@@ -162,7 +206,10 @@ impl<'a> Job<'a> {
                 q.hits.count
             } else {
                 let of = |object: &f32| method_of(&self.picture.method_of, *object);
-                from + q.hits.object[from..q.hits.count].iter().take_while(|o| of(o) == number).count()
+                from + q.hits.object[from..q.hits.count]
+                    .iter()
+                    .take_while(|o| of(o) == number)
+                    .count()
             };
             ao::occlusion(s, solid, *method, from..to, q);
             from = to;
@@ -173,10 +220,15 @@ impl<'a> Job<'a> {
     fn light<S: Simd>(&self, s: S, solid: &Solid<'_>, q: &mut Scratch) {
         let (count, shading) = (q.hits.count, self.picture.scene.settings.shading);
         let columns = q.hits.diffuse.iter_mut().chain(&mut q.hits.gloss);
-        columns.chain([&mut q.hits.shadow, &mut q.hits.shares]).for_each(|c| c[..count].fill(0.0));
+        columns
+            .chain([&mut q.hits.shadow, &mut q.hits.shares])
+            .for_each(|c| c[..count].fill(0.0));
         for light in &self.picture.scene.lights {
             shadows(s, solid, light, q);
-            let only = self.picture.material.map(|m| self.material(f32::from(m)).shininess);
+            let only = self
+                .picture
+                .material
+                .map(|m| self.material(f32::from(m)).shininess);
             s.vectorize(
                 #[inline(always)]
                 || {
@@ -189,12 +241,25 @@ impl<'a> Job<'a> {
                             (Shading::Phong, None) => self.shininess(s, hits, i),
                             (_, shininess) => splat(s, shininess.unwrap_or(1.0)),
                         };
-                        let got = arrival(shading, light, to, load3(s, &hits.normal, i), d, lit, shininess);
-                        let (diffuse, gloss) = (load3(s, &hits.diffuse, i), load3(s, &hits.gloss, i));
+                        let got = arrival(
+                            shading,
+                            light,
+                            to,
+                            load3(s, &hits.normal, i),
+                            d,
+                            lit,
+                            shininess,
+                        );
+                        let (diffuse, gloss) =
+                            (load3(s, &hits.diffuse, i), load3(s, &hits.gloss, i));
                         store3(diffuse + got.diffuse, &mut hits.diffuse, i);
                         store3(gloss + got.gloss, &mut hits.gloss, i);
                         if self.wants(Plane::Shadow) {
-                            store(load(s, &hits.shadow, i) + got.share * lit, &mut hits.shadow, i);
+                            store(
+                                load(s, &hits.shadow, i) + got.share * lit,
+                                &mut hits.shadow,
+                                i,
+                            );
                             store(load(s, &hits.shares, i) + got.share, &mut hits.shares, i);
                         }
                     }
@@ -204,8 +269,16 @@ impl<'a> Job<'a> {
     }
 
     fn material(&self, number: f32) -> &Material {
-        let at = if number >= 0.0 { number as usize } else { usize::MAX };
-        self.picture.scene.materials.get(at).unwrap_or(&self.fallback)
+        let at = if number >= 0.0 {
+            number as usize
+        } else {
+            usize::MAX
+        };
+        self.picture
+            .scene
+            .materials
+            .get(at)
+            .unwrap_or(&self.fallback)
     }
 
     #[inline(always)]
@@ -216,19 +289,33 @@ impl<'a> Job<'a> {
             |k| {
                 let (a, b) = (hits.first[i + k], hits.second[i + k]);
                 let (a, share) = (self.material(a).shininess, hits.share[i + k]);
-                if share > 0.0 { a + (self.material(b).shininess - a) * share } else { a }
+                if share > 0.0 {
+                    a + (self.material(b).shininess - a) * share
+                } else {
+                    a
+                }
             },
         ))
     }
 
     /// What the surface is made of at the hits from `i` on: of each material that any of them has, as much as they have.
     #[inline(always)]
-    fn substance<S: Simd>(&self, s: S, hits: &Hits, i: usize, at: &Place<Lanes<S>>) -> Substance<Lanes<S>> {
+    fn substance<S: Simd>(
+        &self,
+        s: S,
+        hits: &Hits,
+        i: usize,
+        at: &Place<Lanes<S>>,
+    ) -> Substance<Lanes<S>> {
         if let Some(only) = self.picture.material {
             return whole(self.material(f32::from(only)), at, splat(s, 1.0));
         }
         let lanes = S::f32s::LEN.min(hits.count - i);
-        let (first, second, share) = (load(s, &hits.first, i), load(s, &hits.second, i), load(s, &hits.share, i));
+        let (first, second, share) = (
+            load(s, &hits.first, i),
+            load(s, &hits.second, i),
+            load(s, &hits.share, i),
+        );
         let mut sum: Option<Substance<Lanes<S>>> = None;
         let mut last = f32::NEG_INFINITY;
         loop {
@@ -247,10 +334,13 @@ impl<'a> Job<'a> {
                 break;
             }
             last = number;
-            let (not_first, not_second) =
-                (first.below(number) | first.above(number), second.below(number) | second.above(number));
+            let (not_first, not_second) = (
+                first.below(number) | first.above(number),
+                second.below(number) | second.above(number),
+            );
             let zero = splat(s, 0.0);
-            let weight = Lanes::select(not_first, zero, share.one_minus()) + Lanes::select(not_second, zero, share);
+            let weight = Lanes::select(not_first, zero, share.one_minus())
+                + Lanes::select(not_second, zero, share);
             let part = whole(self.material(number), at, weight);
             sum = Some(match sum {
                 None => part,
@@ -281,7 +371,16 @@ impl<'a> Job<'a> {
                     let (_, d) = self.view.split(load3(s, &hits.ray, i));
                     let n = load3(s, &hits.normal, i);
                     let pixel = self.view.pixel.at(load(s, &hits.t, i)) * finer;
-                    let place = Place::new(load3(s, &hits.point, i), n, d, pixel);
+                    let mut place = Place::new(load3(s, &hits.point, i), n, d, pixel);
+                    if self.picture.has_orbits {
+                        let o = &hits.orbit;
+                        place = place.with_orbit([
+                            load(s, &o[0], i),
+                            load(s, &o[1], i),
+                            load(s, &o[2], i),
+                            load(s, &o[3], i),
+                        ]);
+                    }
                     let what = self.substance(s, hits, i, &place);
                     let (diffuse, gloss) = (load3(s, &hits.diffuse, i), load3(s, &hits.gloss, i));
                     let (bent, open) = (load3(s, &hits.bent, i), load(s, &hits.open, i));
@@ -313,7 +412,10 @@ impl<'a> Job<'a> {
             }
             planes.coverage[at] = 1.0;
         }
-        if Plane::ALL.iter().any(|p| !matches!(p, Plane::Colour | Plane::Coverage) && self.wants(*p)) {
+        if Plane::ALL
+            .iter()
+            .any(|p| !matches!(p, Plane::Colour | Plane::Coverage) && self.wants(*p))
+        {
             planes.add(hits, self.plan.steps.then_some(&*q.steps));
         }
     }
@@ -324,11 +426,17 @@ impl<'a> Job<'a> {
         s.vectorize(
             #[inline(always)]
             || {
-                let ramp = Lanes(S::f32s::from_fn(s, #[inline(always)] |k| k as f32));
+                let ramp = Lanes(S::f32s::from_fn(
+                    s,
+                    #[inline(always)]
+                    |k| k as f32,
+                ));
                 for y in 0..area.height {
                     let v = splat(s, (area.y + y) as f32 + 0.5);
                     for x in (0..area.width).step_by(S::f32s::LEN) {
-                        let (_, d) = self.view.split(self.view.ray(ramp + ((area.x + x) as f32 + 0.5), v));
+                        let (_, d) = self
+                            .view
+                            .split(self.view.ray(ramp + ((area.x + x) as f32 + 0.5), v));
                         store3(sky(heavens, d.y), &mut q.planes.colour, y * WIDTH + x);
                         store(splat(s, 0.0), &mut q.planes.coverage, y * WIDTH + x);
                     }
@@ -338,10 +446,18 @@ impl<'a> Job<'a> {
     }
 
     /// Writes the tile to the film, all but what is filtered.
-    pub(crate) fn deliver(&self, area: &Area, size: [u32; 2], q: &Scratch, band: &mut [(Plane, &mut [f32])]) {
+    pub(crate) fn deliver(
+        &self,
+        area: &Area,
+        size: [u32; 2],
+        q: &Scratch,
+        band: &mut [(Plane, &mut [f32])],
+    ) {
         let rays = self.samples() as f32;
         for (plane, numbers) in band {
-            if numbers.is_empty() || (self.is_filtered() && matches!(plane, Plane::Colour | Plane::Coverage)) {
+            if numbers.is_empty()
+                || (self.is_filtered() && matches!(plane, Plane::Colour | Plane::Coverage))
+            {
                 continue;
             }
             let channels = plane.channels();
@@ -367,7 +483,11 @@ fn whole<S: Simd>(m: &Material, at: &Place<Lanes<S>>, weight: Lanes<S>) -> Subst
 }
 
 fn method_of(methods: &[usize], object: f32) -> usize {
-    if object >= 0.0 { methods.get(object as usize).copied().unwrap_or(0) } else { 0 }
+    if object >= 0.0 {
+        methods.get(object as usize).copied().unwrap_or(0)
+    } else {
+        0
+    }
 }
 
 impl Hits {
@@ -377,9 +497,25 @@ impl Hits {
         let mut order: Vec<usize> = (0..n).collect();
         order.sort_by_key(|&i| method_of(methods, self.object[i]));
         let mut old = vec![0.0; n];
-        let columns = [&mut self.t, &mut self.f, &mut self.steps, &mut self.residual, &mut self.offset];
-        let marks = [&mut self.object, &mut self.first, &mut self.second, &mut self.share];
-        let vectors = self.ray.iter_mut().chain(&mut self.point).chain(&mut self.normal);
+        let columns = [
+            &mut self.t,
+            &mut self.f,
+            &mut self.steps,
+            &mut self.residual,
+            &mut self.offset,
+        ];
+        let marks = [
+            &mut self.object,
+            &mut self.first,
+            &mut self.second,
+            &mut self.share,
+        ];
+        let vectors = self
+            .ray
+            .iter_mut()
+            .chain(&mut self.orbit)
+            .chain(&mut self.point)
+            .chain(&mut self.normal);
         for column in columns.into_iter().chain(marks).chain(vectors) {
             old.copy_from_slice(&column[..n]);
             for (to, &from) in column.iter_mut().zip(&order) {
@@ -407,5 +543,8 @@ fn marks<S: Simd>(s: S, solid: &Solid<'_>, q: &mut Scratch) {
         q.hits.first[k..k + n].copy_from_slice(&marks.first.0[..n]);
         q.hits.second[k..k + n].copy_from_slice(&marks.second.0[..n]);
         q.hits.share[k..k + n].copy_from_slice(&marks.share.0[..n]);
+        for (column, orbit) in q.hits.orbit.iter_mut().zip(&marks.orbit) {
+            column[k..k + n].copy_from_slice(&orbit.0[..n]);
+        }
     }
 }

@@ -1,8 +1,8 @@
 //! The CPU renderer: sphere tracing in SIMD streams.
 
 mod ao;
-pub mod bench;
 mod beam;
+pub mod bench;
 mod camera;
 mod cone;
 mod job;

@@ -85,7 +85,10 @@ pub(crate) struct Stream<'a> {
 }
 
 /// Marches rays or cones number 0 to `count` as far as they have a span. Returns the evaluations.
-#[expect(clippy::too_many_arguments, reason = "separate parts of the scratch memory")]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "separate parts of the scratch memory"
+)]
 pub(crate) fn stream<S: Simd, M: Marcher>(
     s: S,
     marcher: M,
@@ -146,8 +149,19 @@ fn begin<S: Simd, M: Marcher>(
     new.put(slope, &mut rays.m, n);
     new.put(marcher.begin(r, slope).min(end - start), &mut rays.z, n);
     new.put(r, &mut rays.r, n);
-    let (ordinal, side) = (S::u32s::from_fn(s, #[inline(always)] |k| k as u32) + (at as u32), radius.0.bitcast::<S::u32s>() & INSIDE);
-    new.put_words(ordinal | side | (iteration & ITERATIONS) << ORDINAL_BITS, &mut rays.word, n);
+    let (ordinal, side) = (
+        S::u32s::from_fn(
+            s,
+            #[inline(always)]
+            |k| k as u32,
+        ) + (at as u32),
+        radius.0.bitcast::<S::u32s>() & INSIDE,
+    );
+    new.put_words(
+        ordinal | side | (iteration & ITERATIONS) << ORDINAL_BITS,
+        &mut rays.word,
+        n,
+    );
     rays.count += new.count;
 }
 
@@ -179,12 +193,18 @@ fn advance<S: Simd, M: Marcher>(
     for i in (0..count).step_by(S::f32s::LEN) {
         let live = first_lanes(s, count - i);
         let value = load(s, &work.values().0, i);
-        let at = Step { t: load(s, &rays.t, i), z: load(s, &rays.z, i), r: load(s, &rays.r, i), m: load(s, &rays.m, i) };
+        let at = Step {
+            t: load(s, &rays.t, i),
+            z: load(s, &rays.z, i),
+            r: load(s, &rays.r, i),
+            m: load(s, &rays.m, i),
+        };
         let word = load_words(s, &rays.word, i);
         let first = (word >> ORDINAL_BITS & ITERATIONS).simd_eq(iteration & ITERATIONS);
         // rays of whose start nothing is known take the side of their first sample
         let unknown = first & at.r.0.simd_le(0.0);
-        let word = word | unknown.select(value.0.bitcast::<S::u32s>() & INSIDE, S::u32s::splat(s, 0));
+        let word =
+            word | unknown.select(value.0.bitcast::<S::u32s>() & INSIDE, S::u32s::splat(s, 0));
         let first = LaneMask(first);
         let f = sided(value, word);
         let to = at.t + at.z;
@@ -197,7 +217,15 @@ fn advance<S: Simd, M: Marcher>(
         let done = Chosen::new(next.hit & live);
         let on = Chosen::new(live & !next.hit & within);
         if done.count + on.count < S::f32s::LEN || !done.none() {
-            let arrived = Arrived { ray, t: step.t, f, clearance, m: step.m, word, iteration };
+            let arrived = Arrived {
+                ray,
+                t: step.t,
+                f,
+                clearance,
+                m: step.m,
+                word,
+                iteration,
+            };
             if !done.none() {
                 sink.found(done, &arrived);
             }
@@ -224,7 +252,10 @@ fn advance<S: Simd, M: Marcher>(
 #[inline(always)]
 fn retire<S: Simd>(max_steps: u32, iteration: u32, rays: &mut Rays, sink: &mut impl Sink<S>) {
     let old = |w: &u32| age(*w, iteration) >= max_steps;
-    let spent = rays.word[..rays.count].iter().take_while(|w| old(w)).count();
+    let spent = rays.word[..rays.count]
+        .iter()
+        .take_while(|w| old(w))
+        .count();
     if spent > 0 {
         (0..spent).for_each(|i| sink.spent(rays, i));
         rays.remove_first(spent);
@@ -234,11 +265,16 @@ fn retire<S: Simd>(max_steps: u32, iteration: u32, rays: &mut Rays, sink: &mut i
 impl Rays {
     fn remove_first(&mut self, n: usize) {
         let rest = n..self.count;
-        for column in self.ray.iter_mut().chain([&mut self.t, &mut self.z, &mut self.r, &mut self.m, &mut self.end]) {
+        for column in self.ray.iter_mut().chain([
+            &mut self.t,
+            &mut self.z,
+            &mut self.r,
+            &mut self.m,
+            &mut self.end,
+        ]) {
             column.copy_within(rest.clone(), 0);
         }
         self.word.copy_within(rest, 0);
         self.count -= n;
     }
 }
-

@@ -91,8 +91,17 @@ impl Marcher for Sphere {
     #[inline(always)]
     fn advance<R: Rough>(self, at: Step<R>, f: R, threshold: R, _first: R::Mask) -> Advance<R> {
         let kept = at.z.above(f32::NEG_INFINITY);
-        let step = Step { t: at.t + at.z, z: f.max(threshold * LEAST), r: f, m: at.m };
-        Advance { step, kept, hit: f.below(threshold) }
+        let step = Step {
+            t: at.t + at.z,
+            z: f.max(threshold * LEAST),
+            r: f,
+            m: at.m,
+        };
+        Advance {
+            step,
+            kept,
+            hit: f.below(threshold),
+        }
     }
 }
 
@@ -113,8 +122,17 @@ impl Marcher for Relaxed {
         let gap = apart(at, f);
         let (t, r, kept) = settle(at, f, gap);
         let m = R::select(gap, r.lit(1.0), R::select(first, r.lit(self.omega), at.m));
-        let step = Step { t, z: (r * m).max(threshold * LEAST), r, m };
-        Advance { step, kept, hit: kept & f.below(threshold) }
+        let step = Step {
+            t,
+            z: (r * m).max(threshold * LEAST),
+            r,
+            m,
+        };
+        Advance {
+            step,
+            kept,
+            hit: kept & f.below(threshold),
+        }
     }
 }
 
@@ -138,8 +156,17 @@ impl Marcher for Enhanced {
         let behind = (at.z + at.r - f).max(at.z * (1.0 - STEEPEST)).max(1e-20);
         let guess = r + r * (ahead * behind.rough_recip()).max(0.0) * self.share;
         let z = R::select(first | gap, r, guess);
-        let step = Step { t, z: z.max(threshold * LEAST), r, m: at.m };
-        Advance { step, kept, hit: kept & f.below(threshold) }
+        let step = Step {
+            t,
+            z: z.max(threshold * LEAST),
+            r,
+            m: at.m,
+        };
+        Advance {
+            step,
+            kept,
+            hit: kept & f.below(threshold),
+        }
     }
 }
 
@@ -163,8 +190,17 @@ impl Marcher for Auto {
         let m = R::select(first, at.m, at.m.mix(slope, self.beta).min(STEEPEST));
         // after a gap the step must be the radius itself: no other is sure to be kept
         let z = R::select(gap, r, self.begin(r, m)).max(threshold * LEAST);
-        let step = Step { t, z, r, m: R::select(gap, r.lit(-1.0), m) };
-        Advance { step, kept, hit: kept & f.below(threshold) }
+        let step = Step {
+            t,
+            z,
+            r,
+            m: R::select(gap, r.lit(-1.0), m),
+        };
+        Advance {
+            step,
+            kept,
+            hit: kept & f.below(threshold),
+        }
     }
 }
 
@@ -186,8 +222,17 @@ impl Marcher for Fixed {
         let within = at.m.above(0.0) | passed;
         let half = at.z.abs() * 0.5;
         let z = R::select(within, R::select(passed, -half, half), half.lit(self.step));
-        let step = Step { t: at.t + at.z, z, r: f.lit(0.0), m: R::select(within, f.lit(1.0), f.lit(0.0)) };
-        Advance { step, kept: at.z.above(f32::NEG_INFINITY), hit: within & half.below(threshold * 0.5) }
+        let step = Step {
+            t: at.t + at.z,
+            z,
+            r: f.lit(0.0),
+            m: R::select(within, f.lit(1.0), f.lit(0.0)),
+        };
+        Advance {
+            step,
+            kept: at.z.above(f32::NEG_INFINITY),
+            hit: within & half.below(threshold * 0.5),
+        }
     }
 }
 
@@ -197,7 +242,12 @@ mod tests {
 
     /// Marches along a function of one variable with slope at most 1; the hit, the samples it took.
     fn run<M: Marcher>(m: M, f: impl Fn(f32) -> f32, end: f32) -> (Option<f32>, u32) {
-        let mut at = Step { t: 0.0, z: 0.0, r: 0.0, m: 0.0 };
+        let mut at = Step {
+            t: 0.0,
+            z: 0.0,
+            r: 0.0,
+            m: 0.0,
+        };
         for samples in 1..10_000 {
             let next = m.advance(at, f(at.t + at.z), 1e-4, samples == 1);
             if next.hit {
@@ -234,7 +284,9 @@ mod tests {
             let (found, n) = run(m, f, 10.0);
             samples += n;
             match (found, root) {
-                (Some(t), Some(r)) => assert!((t - r).abs() < 5e-3, "{name}, case {i}: {t} instead of {r}"),
+                (Some(t), Some(r)) => {
+                    assert!((t - r).abs() < 5e-3, "{name}, case {i}: {t} instead of {r}")
+                }
                 (None, None) => {}
                 (found, root) => panic!("{name}, case {i}: {found:?} instead of {root:?}"),
             }
@@ -261,8 +313,17 @@ mod tests {
             r
         }
         fn advance<R: Rough>(self, at: Step<R>, f: R, threshold: R, _first: R::Mask) -> Advance<R> {
-            let step = Step { t: at.t + at.z, z: f.max(0.0) * 1.3 + threshold, r: f, m: at.m };
-            Advance { step, kept: at.z.above(-1.0), hit: f.below(threshold) & f.above(-threshold) }
+            let step = Step {
+                t: at.t + at.z,
+                z: f.max(0.0) * 1.3 + threshold,
+                r: f,
+                m: at.m,
+            };
+            Advance {
+                step,
+                kept: at.z.above(-1.0),
+                hit: f.below(threshold) & f.above(-threshold),
+            }
         }
     }
 

@@ -13,6 +13,8 @@ pub(crate) struct Place<R> {
     pub(crate) normal: Vec3<R>,
     /// How far the point moves from one ray to the next, at most, along each axis.
     pub(crate) footprint: Vec3<R>,
+    /// How near the orbit of a fractal came to its traps.
+    pub(crate) orbit: [R; 4],
 }
 
 impl<R: Real<Scalar = f32>> Place<R> {
@@ -30,18 +32,37 @@ impl<R: Real<Scalar = f32>> Place<R> {
             #[inline(always)]
             |k| pixel * (n[k].sq().one_minus().max(0.0).sqrt() + a[k].abs() * longer),
         );
-        Place { point, normal, footprint }
+        Place {
+            point,
+            normal,
+            footprint,
+            orbit: [pixel.lit(0.0); 4],
+        }
+    }
+
+    /// The same place with the orbit of a fractal.
+    #[inline(always)]
+    pub(crate) fn with_orbit(self, orbit: [R; 4]) -> Self {
+        Place { orbit, ..self }
     }
 }
 
 /// Numbers of which each can be treated on its own.
 pub(crate) trait PerLane: Real<Scalar = f32> {
     /// `f` of every lane.
-    fn each(point: Vec3<Self>, normal: Vec3<Self>, f: impl Fn([f32; 3], [f32; 3]) -> [f32; 3]) -> Vec3<Self>;
+    fn each(
+        point: Vec3<Self>,
+        normal: Vec3<Self>,
+        f: impl Fn([f32; 3], [f32; 3]) -> [f32; 3],
+    ) -> Vec3<Self>;
 }
 
 impl PerLane for f32 {
-    fn each(point: Vec3<f32>, normal: Vec3<f32>, f: impl Fn([f32; 3], [f32; 3]) -> [f32; 3]) -> Vec3<f32> {
+    fn each(
+        point: Vec3<f32>,
+        normal: Vec3<f32>,
+        f: impl Fn([f32; 3], [f32; 3]) -> [f32; 3],
+    ) -> Vec3<f32> {
         let c = f(point.array(), normal.array());
         v3(c[0], c[1], c[2])
     }
@@ -49,11 +70,18 @@ impl PerLane for f32 {
 
 impl<S: Simd> PerLane for Lanes<S> {
     #[inline(always)]
-    fn each(point: Vec3<Self>, normal: Vec3<Self>, f: impl Fn([f32; 3], [f32; 3]) -> [f32; 3]) -> Vec3<Self> {
+    fn each(
+        point: Vec3<Self>,
+        normal: Vec3<Self>,
+        f: impl Fn([f32; 3], [f32; 3]) -> [f32; 3],
+    ) -> Vec3<Self> {
         let mut out = splat3(point.x.0.token(), [0.0; 3]);
         let (p, n) = (point.array(), normal.array());
         for i in 0..S::f32s::LEN {
-            let c = f([p[0].0[i], p[1].0[i], p[2].0[i]], [n[0].0[i], n[1].0[i], n[2].0[i]]);
+            let c = f(
+                [p[0].0[i], p[1].0[i], p[2].0[i]],
+                [n[0].0[i], n[1].0[i], n[2].0[i]],
+            );
             (out.x.0[i], out.y.0[i], out.z.0[i]) = (c[0], c[1], c[2]);
         }
         out
@@ -63,6 +91,9 @@ impl<S: Simd> PerLane for Lanes<S> {
 /// Share of a feature's size that a point is moved into the surface: the faces of solids like to lie on the borders of
 /// cubes and bands.
 const INWARDS: f32 = 1e-3;
+
+/// Distance to an orbit trap within which nearer makes little difference.
+const TRAP: f32 = 0.08;
 
 /// The linear colour of a pattern at a place.
 #[inline(always)]
@@ -76,13 +107,21 @@ pub(crate) fn colour<R: PerLane>(pattern: &Pattern, at: &Place<R>) -> Vec3<R> {
             let even = square_wave(p.x, w.x) * square_wave(p.y, w.y) * square_wave(p.z, w.z);
             between(colours, even * 0.5 + 0.5)
         }
-        Pattern::Stripes { colours, direction, size } => {
+        Pattern::Stripes {
+            colours,
+            direction,
+            size,
+        } => {
             let to = v3(direction.x, direction.y, direction.z);
             let p = (at.point - at.normal * (size * INWARDS)).dot(to) / *size;
             let w = at.footprint.dot(to.abs()) / *size;
             between(colours, square_wave(p, w) * 0.5 + 0.5)
         }
-        Pattern::Noise { colours, size, octaves } => {
+        Pattern::Noise {
+            colours,
+            size,
+            octaves,
+        } => {
             let (mut sum, mut share) = (x.lit(0.0), 1.0);
             let mut p = at.point / *size;
             let mut w = at.footprint.length() / *size;
@@ -93,7 +132,8 @@ pub(crate) fn colour<R: PerLane>(pattern: &Pattern, at: &Place<R>) -> Vec3<R> {
                 sum = sum + gradient_noise(p) * seen * share;
                 total += share;
                 // turned and moved, so that the lattices of the octaves do not meet
-                p = v3(p.y * 0.8 + p.z * 0.6, p.x, p.y * 0.6 - p.z * 0.8) * 2.0 + v3(0.37, 0.61, 0.13 + octave as f32);
+                p = v3(p.y * 0.8 + p.z * 0.6, p.x, p.y * 0.6 - p.z * 0.8) * 2.0
+                    + v3(0.37, 0.61, 0.13 + octave as f32);
                 w = w * 2.0;
                 share *= 0.5;
             }
@@ -105,16 +145,43 @@ pub(crate) fn colour<R: PerLane>(pattern: &Pattern, at: &Place<R>) -> Vec3<R> {
             let t = p.dot(v3(way.x, way.y, way.z)) / way.length_squared().max(f32::MIN_POSITIVE);
             between(colours, t.clamp01())
         }
-        Pattern::Triplanar { image, size, sharpness } => {
-            R::each(at.point, at.normal, #[inline(always)] |p, n| triplanar(image, *size, *sharpness, p, n))
+        Pattern::Triplanar {
+            image,
+            size,
+            sharpness,
+        } => R::each(
+            at.point,
+            at.normal,
+            #[inline(always)]
+            |p, n| triplanar(image, *size, *sharpness, p, n),
+        ),
+        Pattern::Orbit { colours } => {
+            // the nearer a trap, the more its colour counts
+            let weights = at.orbit.map(
+                #[inline(always)]
+                |t| (t.sq() + TRAP * TRAP).recip(),
+            );
+            let total = weights[0] + weights[1] + weights[2] + weights[3];
+            each(
+                #[inline(always)]
+                |k| {
+                    let sum = weights[0] * colours[0][k]
+                        + weights[1] * colours[1][k]
+                        + weights[2] * colours[2][k]
+                        + weights[3] * colours[3][k];
+                    sum / total
+                },
+            )
         }
-        Pattern::Orbit { colours } => constant(x, colours[0].to_array()),
     }
 }
 
 #[inline(always)]
 fn between<R: Real<Scalar = f32>>(colours: &[glam::Vec3; 2], t: R) -> Vec3<R> {
-    each(#[inline(always)] |k| t * (colours[1][k] - colours[0][k]) + colours[0][k])
+    each(
+        #[inline(always)]
+        |k| t * (colours[1][k] - colours[0][k]) + colours[0][k],
+    )
 }
 
 /// 1 in even cells of size 1 and -1 in odd ones, averaged over `w` around `x` (the difference of two values of its integral,
@@ -158,13 +225,19 @@ fn texel(image: &Image, u: f32, v: f32) -> glam::Vec3 {
     if width == 0 || height == 0 || image.pixels.len() < width * height {
         return glam::Vec3::ZERO;
     }
-    let (x, y) = ((u - u.floor()) * width as f32 - 0.5, (v - v.floor()) * height as f32 - 0.5);
+    let (x, y) = (
+        (u - u.floor()) * width as f32 - 0.5,
+        (v - v.floor()) * height as f32 - 0.5,
+    );
     let (i, j) = (x.floor(), y.floor());
     let at = |dx: f32, dy: f32| {
         let x = (i + dx).rem_euclid(width as f32) as usize;
         let y = (j + dy).rem_euclid(height as f32) as usize;
         image.pixels[y.min(height - 1) * width + x.min(width - 1)]
     };
-    let (a, b) = (at(0.0, 0.0).lerp(at(1.0, 0.0), x - i), at(0.0, 1.0).lerp(at(1.0, 1.0), x - i));
+    let (a, b) = (
+        at(0.0, 0.0).lerp(at(1.0, 0.0), x - i),
+        at(0.0, 1.0).lerp(at(1.0, 1.0), x - i),
+    );
     a.lerp(b, y - j)
 }

@@ -13,7 +13,13 @@ const LEAST_STEP: f32 = 1.0 / 16384.0;
 
 /// Puts hits where the footprint of their pixel meets the surface (Keinert 2014, 3.4, equations 2 and 3), finds the points,
 /// and the values there if they are wanted.
-pub(crate) fn place<S: Simd>(s: S, solid: &Solid<'_>, rounds: u32, residual: bool, q: &mut Scratch) {
+pub(crate) fn place<S: Simd>(
+    s: S,
+    solid: &Solid<'_>,
+    rounds: u32,
+    residual: bool,
+    q: &mut Scratch,
+) {
     s.vectorize(
         #[inline(always)]
         || {
@@ -21,11 +27,21 @@ pub(crate) fn place<S: Simd>(s: S, solid: &Solid<'_>, rounds: u32, residual: boo
             for k in (0..q.hits.count).step_by(BATCH) {
                 let n = (q.hits.count - k).min(BATCH);
                 for _ in 0..rounds {
-                    sample(s, solid, n, &mut q.work, #[inline(always)] |i| point_of(s, solid, &q.hits, k + i));
+                    sample(
+                        s,
+                        solid,
+                        n,
+                        &mut q.work,
+                        #[inline(always)]
+                        |i| point_of(s, solid, &q.hits, k + i),
+                    );
                     q.counts.march += n as u64;
                     for i in (0..n).step_by(S::f32s::LEN) {
                         let t = load(s, &q.hits.t, k + i);
-                        let f = sided(load(s, &q.work.values().0, i), load_words(s, &q.hits.word, k + i));
+                        let f = sided(
+                            load(s, &q.work.values().0, i),
+                            load_words(s, &q.hits.word, k + i),
+                        );
                         let wanted = threshold.at(t);
                         // a hit that was taken for want of steps may be far from the surface: it stays
                         let by = (f - wanted).clamp(-(wanted * 2.0), wanted * 2.0);
@@ -36,10 +52,21 @@ pub(crate) fn place<S: Simd>(s: S, solid: &Solid<'_>, rounds: u32, residual: boo
                     let p = point_of(s, solid, &q.hits, k + i);
                     store3(p, &mut q.hits.point, k + i);
                     let (t, f) = (load(s, &q.hits.t, k + i), load(s, &q.hits.f, k + i));
-                    store(f.abs().max(threshold.at(t)) * 2.0, &mut q.hits.offset, k + i);
+                    store(
+                        f.abs().max(threshold.at(t)) * 2.0,
+                        &mut q.hits.offset,
+                        k + i,
+                    );
                 }
                 if residual && rounds > 0 {
-                    sample(s, solid, n, &mut q.work, #[inline(always)] |i| load3(s, &q.hits.point, k + i));
+                    sample(
+                        s,
+                        solid,
+                        n,
+                        &mut q.work,
+                        #[inline(always)]
+                        |i| load3(s, &q.hits.point, k + i),
+                    );
                     q.counts.march += n as u64;
                     q.hits.residual[k..k + n].copy_from_slice(&q.work.values().0[..n]);
                 } else if residual {
@@ -78,11 +105,21 @@ fn point_of<S: Simd>(s: S, solid: &Solid<'_>, hits: &Hits, i: usize) -> Vec3<Lan
 }
 
 /// The corners of a tetrahedron, from its middle.
-pub(crate) const TETRAHEDRON: [[f32; 3]; 4] =
-    [[1.0, -1.0, -1.0], [-1.0, -1.0, 1.0], [-1.0, 1.0, -1.0], [1.0, 1.0, 1.0]];
+pub(crate) const TETRAHEDRON: [[f32; 3]; 4] = [
+    [1.0, -1.0, -1.0],
+    [-1.0, -1.0, 1.0],
+    [-1.0, 1.0, -1.0],
+    [1.0, 1.0, 1.0],
+];
 /// Both ways along each axis.
-pub(crate) const CENTRAL: [[f32; 3]; 6] =
-    [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]];
+pub(crate) const CENTRAL: [[f32; 3]; 6] = [
+    [1.0, 0.0, 0.0],
+    [-1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [0.0, -1.0, 0.0],
+    [0.0, 0.0, 1.0],
+    [0.0, 0.0, -1.0],
+];
 
 /// The neighbours in a cube of 27 that differ in at most `most` coordinates, sides first.
 pub(crate) const fn neighbours<const N: usize>(most: usize) -> [[f32; 3]; N] {
@@ -111,7 +148,9 @@ pub(crate) const NEIGHBOURS_26: [[f32; 3]; 26] = neighbours(3);
 /// Distance between the samples of a normal at `p`: half a pixel, but not less than single precision can tell.
 #[inline(always)]
 pub(crate) fn step<R: Real<Scalar = f32>>(p: Vec3<R>, pixel: R) -> R {
-    (pixel * 0.5).max(p.abs().max_component() * LEAST_STEP).max(1e-18)
+    (pixel * 0.5)
+        .max(p.abs().max_component() * LEAST_STEP)
+        .max(1e-18)
 }
 
 /// Finds the normals of all hits, on the side that is marched.
@@ -137,11 +176,18 @@ fn by_samples<S: Simd>(s: S, solid: &Solid<'_>, samples: &[[f32; 3]], q: &mut Sc
                 for &to in samples {
                     let length = (to[0] * to[0] + to[1] * to[1] + to[2] * to[2]).sqrt();
                     let hits = &q.hits;
-                    sample(s, solid, n, &mut q.work, #[inline(always)] |i| {
-                        let p = load3(s, &hits.point, k + i);
-                        let h = step(p, solid.view.pixel.at(load(s, &hits.t, k + i)));
-                        along(p, splat3(s, to), h)
-                    });
+                    sample(
+                        s,
+                        solid,
+                        n,
+                        &mut q.work,
+                        #[inline(always)]
+                        |i| {
+                            let p = load3(s, &hits.point, k + i);
+                            let h = step(p, solid.view.pixel.at(load(s, &hits.t, k + i)));
+                            along(p, splat3(s, to), h)
+                        },
+                    );
                     q.counts.normal += n as u64;
                     for i in (0..n).step_by(S::f32s::LEN) {
                         let f = load(s, &q.work.values().0, i);
@@ -163,11 +209,22 @@ fn by_gradients<S: Simd>(s: S, solid: &Solid<'_>, q: &mut Scratch) {
         || {
             for k in (0..q.hits.count).step_by(BATCH) {
                 let n = (q.hits.count - k).min(BATCH);
-                fill(n, &mut q.work, #[inline(always)] |i| load3(s, &q.hits.point, k + i));
+                fill(
+                    n,
+                    &mut q.work,
+                    #[inline(always)]
+                    |i| load3(s, &q.hits.point, k + i),
+                );
                 eval::gradients(s, solid.program, &mut q.work, n);
                 q.counts.normal += n as u64;
                 for i in (0..n).step_by(S::f32s::LEN) {
-                    finish(s, solid, &mut q.hits, k + i, load3(s, q.work.gradients(), i));
+                    finish(
+                        s,
+                        solid,
+                        &mut q.hits,
+                        k + i,
+                        load3(s, q.work.gradients(), i),
+                    );
                 }
             }
         },
@@ -183,6 +240,10 @@ fn finish<S: Simd>(s: S, solid: &Solid<'_>, hits: &mut Hits, i: usize, g: Vec3<L
     let fit = square.above(1e-36) & square.below(f32::INFINITY);
     let scale = square.lit(1.0) / square.sqrt();
     let n = g * sided(scale, word);
-    let n = v3(Lanes::select(fit, n.x, -d.x), Lanes::select(fit, n.y, -d.y), Lanes::select(fit, n.z, -d.z));
+    let n = v3(
+        Lanes::select(fit, n.x, -d.x),
+        Lanes::select(fit, n.y, -d.y),
+        Lanes::select(fit, n.z, -d.z),
+    );
     store3(n, &mut hits.normal, i);
 }

@@ -49,12 +49,21 @@ mod tests {
         let mut taken = vec![false; TILE_RAYS];
         for (i, &place) in PLACE.iter().enumerate() {
             assert!(!std::mem::replace(&mut taken[usize::from(place)], true));
-            assert_eq!((X[i], Y[i]), ((usize::from(place) % WIDTH) as f32, (usize::from(place) / WIDTH) as f32));
+            assert_eq!(
+                (X[i], Y[i]),
+                (
+                    (usize::from(place) % WIDTH) as f32,
+                    (usize::from(place) / WIDTH) as f32
+                )
+            );
             assert!(X[i] < WIDTH as f32 && Y[i] < HEIGHT as f32);
             // the cell of a pixel has a quarter of its number at each level
             for level in 1..4 {
                 let cell = i >> (2 * level);
-                assert_eq!((X[cell], Y[cell]), ((X[i] as u32 >> level) as f32, (Y[i] as u32 >> level) as f32));
+                assert_eq!(
+                    (X[cell], Y[cell]),
+                    ((X[i] as u32 >> level) as f32, (Y[i] as u32 >> level) as f32)
+                );
             }
         }
     }

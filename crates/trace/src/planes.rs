@@ -48,9 +48,17 @@ impl Planes {
     /// Makes ready for another tile.
     pub(crate) fn clear(&mut self) {
         let vectors = self.normal.iter_mut().chain(&mut self.albedo);
-        let sums = [&mut self.hits, &mut self.occlusion, &mut self.shadow, &mut self.steps];
+        let sums = [
+            &mut self.hits,
+            &mut self.occlusion,
+            &mut self.shadow,
+            &mut self.steps,
+        ];
         let nearest = [&mut self.residual, &mut self.object];
-        vectors.chain(sums).chain(nearest).for_each(|sheet| sheet.fill(0.0));
+        vectors
+            .chain(sums)
+            .chain(nearest)
+            .for_each(|sheet| sheet.fill(0.0));
         self.depth.fill(f32::INFINITY);
     }
 
@@ -82,10 +90,18 @@ impl Planes {
     /// Writes the pixels from `at` on, of which `rays` samples were taken each.
     pub(crate) fn write(&self, plane: Plane, at: usize, rays: f32, out: &mut [f32]) {
         // where nothing is hit, nothing is occluded or in shadow
-        let mean = |sheet: &Sheet, i: usize| if self.hits[i] > 0.0 { sheet[i] / self.hits[i] } else { 1.0 };
+        let mean = |sheet: &Sheet, i: usize| {
+            if self.hits[i] > 0.0 {
+                sheet[i] / self.hits[i]
+            } else {
+                1.0
+            }
+        };
         match plane {
             Plane::Colour => interleave(&self.colour, at, out, |c, _| c),
-            Plane::Albedo => interleave(&self.albedo, at, out, |c, i| c.map(|x| x / self.hits[i].max(1.0))),
+            Plane::Albedo => interleave(&self.albedo, at, out, |c, i| {
+                c.map(|x| x / self.hits[i].max(1.0))
+            }),
             Plane::Normal => interleave(&self.normal, at, out, |c, _| {
                 let length = (c[0] * c[0] + c[1] * c[1] + c[2] * c[2]).sqrt();
                 c.map(|x| x / length.max(f32::MIN_POSITIVE))
@@ -94,14 +110,28 @@ impl Planes {
             Plane::Depth => out.copy_from_slice(&self.depth[at..at + out.len()]),
             Plane::Residual => out.copy_from_slice(&self.residual[at..at + out.len()]),
             Plane::Object => out.copy_from_slice(&self.object[at..at + out.len()]),
-            Plane::Occlusion => out.iter_mut().zip(at..).for_each(|(x, i)| *x = mean(&self.occlusion, i)),
-            Plane::Shadow => out.iter_mut().zip(at..).for_each(|(x, i)| *x = mean(&self.shadow, i)),
-            Plane::Steps => out.iter_mut().zip(at..).for_each(|(x, i)| *x = self.steps[i] / rays),
+            Plane::Occlusion => out
+                .iter_mut()
+                .zip(at..)
+                .for_each(|(x, i)| *x = mean(&self.occlusion, i)),
+            Plane::Shadow => out
+                .iter_mut()
+                .zip(at..)
+                .for_each(|(x, i)| *x = mean(&self.shadow, i)),
+            Plane::Steps => out
+                .iter_mut()
+                .zip(at..)
+                .for_each(|(x, i)| *x = self.steps[i] / rays),
         }
     }
 }
 
-fn interleave(sheets: &[Box<Sheet>; 3], at: usize, out: &mut [f32], f: impl Fn([f32; 3], usize) -> [f32; 3]) {
+fn interleave(
+    sheets: &[Box<Sheet>; 3],
+    at: usize,
+    out: &mut [f32],
+    f: impl Fn([f32; 3], usize) -> [f32; 3],
+) {
     let (pixels, _) = out.as_chunks_mut::<3>();
     for (pixel, i) in pixels.iter_mut().zip(at..) {
         *pixel = f([sheets[0][i], sheets[1][i], sheets[2][i]], i);

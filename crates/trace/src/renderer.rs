@@ -16,6 +16,7 @@ use zeroset_field::catalogue::entries::catalogue;
 use zeroset_field::field::Field;
 use zeroset_field::program::{Limits, Operation, Program};
 use zeroset_scene::film::{Film, Plane};
+use zeroset_scene::material::Pattern;
 use zeroset_scene::render::{Evaluations, Frame, Observer, RenderError, Renderer, Statistics};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::Occlusion;
@@ -40,8 +41,15 @@ impl CpuRenderer {
             .num_threads(threads)
             .thread_name(|k| format!("render {k}"))
             .build()
-            .map_err(|e| RenderError::Threads { threads, reason: e.to_string() })?;
-        Ok(CpuRenderer { pool, level: Level::new(), limits: Limits::default() })
+            .map_err(|e| RenderError::Threads {
+                threads,
+                reason: e.to_string(),
+            })?;
+        Ok(CpuRenderer {
+            pool,
+            level: Level::new(),
+            limits: Limits::default(),
+        })
     }
 
     /// With another SIMD level than the best one of the machine.
@@ -83,7 +91,11 @@ impl CpuRenderer {
         if run.cancelled.into_inner() {
             return Err(RenderError::Cancelled);
         }
-        Ok(Statistics { seconds: began.elapsed().as_secs_f64(), threads: self.threads(), ..statistics })
+        Ok(Statistics {
+            seconds: began.elapsed().as_secs_f64(),
+            threads: self.threads(),
+            ..statistics
+        })
     }
 }
 
@@ -107,6 +119,8 @@ pub struct Picture<'a> {
     pub(crate) material: Option<u16>,
     /// The only object there is, if there is only one.
     pub(crate) object: Option<u16>,
+    /// Whether a material is coloured by the orbits of fractals.
+    pub(crate) has_orbits: bool,
     /// Occlusion methods that objects chose, each once; the first is the scene's.
     pub(crate) methods: Vec<Occlusion>,
     /// The method of every object.
@@ -138,7 +152,13 @@ impl<'a> Picture<'a> {
                 _ => false,
             };
         }
-        let only = |set: &BTreeSet<u16>| if set.len() > 1 { None } else { Some(set.first().copied().unwrap_or(0)) };
+        let only = |set: &BTreeSet<u16>| {
+            if set.len() > 1 {
+                None
+            } else {
+                Some(set.first().copied().unwrap_or(0))
+            }
+        };
         let mut methods = vec![scene.settings.occlusion];
         let mut method_of = Vec::new();
         for object in &scene.objects {
@@ -149,8 +169,20 @@ impl<'a> Picture<'a> {
                 methods.len() - 1
             }));
         }
+        let has_orbits =
+            (scene.materials.iter()).any(|m| matches!(m.pattern, Pattern::Orbit { .. }));
         let spare = Mutex::new(Vec::new());
-        Ok(Picture { scene, program, region, material: only(&materials), object: only(&objects), methods, method_of, spare })
+        Ok(Picture {
+            scene,
+            program,
+            region,
+            material: only(&materials),
+            object: only(&objects),
+            has_orbits,
+            methods,
+            method_of,
+            spare,
+        })
     }
 
     /// What the scene compiled to.
@@ -173,10 +205,22 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    fn new(picture: &'a Picture<'a>, film: &Film, level: Level, observer: &'a dyn Observer) -> Run<'a> {
+    fn new(
+        picture: &'a Picture<'a>,
+        film: &Film,
+        level: Level,
+        observer: &'a dyn Observer,
+    ) -> Run<'a> {
         let size = [film.width(), film.height()];
         let (job, cancelled) = (Job::new(picture, film), AtomicBool::new(false));
-        Run { picture, size, job, level, observer, cancelled }
+        Run {
+            picture,
+            size,
+            job,
+            level,
+            observer,
+            cancelled,
+        }
     }
 
     fn all(&self, film: &mut Film) -> Statistics {
@@ -188,7 +232,10 @@ impl<'a> Run<'a> {
             let tiles = sums.par_chunks_exact_mut(ACCUMULATORS).enumerate();
             tiles.map(|(k, sums)| self.tile(k, sums, &bands)).sum()
         } else {
-            (0..tiles).into_par_iter().map(|k| self.tile(k, &mut [], &bands)).sum()
+            (0..tiles)
+                .into_par_iter()
+                .map(|k| self.tile(k, &mut [], &bands))
+                .sum()
         };
         if filtered && !self.cancelled.load(Ordering::Relaxed) {
             bands.par_iter_mut().enumerate().for_each(|(k, band)| {
@@ -197,7 +244,12 @@ impl<'a> Run<'a> {
             });
         }
         let (rays, hits, evaluations) = (done.rays, done.hits, done.evaluations);
-        Statistics { rays, hits, evaluations, ..Statistics::default() }
+        Statistics {
+            rays,
+            hits,
+            evaluations,
+            ..Statistics::default()
+        }
     }
 
     /// Renders tile number `k`.
@@ -212,10 +264,13 @@ impl<'a> Run<'a> {
         let mut q = scratch.unwrap_or_else(|| Box::new(Scratch::new(self.picture.program())));
         q.counts = Evaluations::default();
         let done = dispatch!(self.level, s => self.job.tile(s, &area, sums, &mut q));
-        let band = &mut *bands[area.y / HEIGHT].lock().unwrap_or_else(PoisonError::into_inner);
+        let band = &mut *bands[area.y / HEIGHT]
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
         self.job.deliver(&area, self.size, &q, band);
         spare.lock().unwrap_or_else(PoisonError::into_inner).push(q);
-        let total = u64::from(self.size[0]) * u64::from(self.size[1]) * u64::from(self.job.samples());
+        let total =
+            u64::from(self.size[0]) * u64::from(self.size[1]) * u64::from(self.job.samples());
         self.observer.advance(done.rays, total);
         done
     }
@@ -242,7 +297,8 @@ impl std::iter::Sum for Done {
 /// The rows of all planes, cut into bands as high as a tile.
 fn bands(film: &mut Film) -> Vec<Band<'_>> {
     let (width, height) = (film.width() as usize, film.height() as usize);
-    let mut bands: Vec<Vec<(Plane, &mut [f32])>> = (0..height.div_ceil(HEIGHT)).map(|_| Vec::new()).collect();
+    let mut bands: Vec<Vec<(Plane, &mut [f32])>> =
+        (0..height.div_ceil(HEIGHT)).map(|_| Vec::new()).collect();
     for (plane, numbers) in film.planes_mut() {
         let rows = numbers.chunks_mut(width * plane.channels() * HEIGHT);
         for (band, rows) in bands.iter_mut().zip(rows) {

@@ -3,8 +3,8 @@
 //! A tile adds its samples up in sums of its own, which reach two pixels over its edges. Once all tiles are done, a pixel
 //! takes the sums of the tiles around it in the order of their numbers: the result does not depend on threads.
 
-use crate::sampling::{radius, weight};
 use crate::planes::Planes;
+use crate::sampling::{radius, weight};
 use crate::simd::{fma, load, load3, splat, store};
 use crate::tile::{Area, HEIGHT, WIDTH};
 use fearless_simd::{Simd, prelude::*};
@@ -49,14 +49,21 @@ fn add<S: Simd, const TAPS: usize>(
         #[inline(always)]
         || {
             let reach = radius(filter);
-            let ramp = Lanes(S::f32s::from_fn(s, #[inline(always)] |k| k as f32));
+            let ramp = Lanes(S::f32s::from_fn(
+                s,
+                #[inline(always)]
+                |k| k as f32,
+            ));
             for y in 0..area.height {
                 for x in (0..area.width).step_by(S::f32s::LEN) {
                     let at = y * WIDTH + x;
                     // lanes right of the picture weigh nothing
                     let inside = (ramp + x as f32).below(area.width as f32);
                     let one = Lanes::select(inside, splat(s, 1.0), splat(s, 0.0));
-                    let (u, v) = (load(s, &planes.jitter[0], at) - 0.5, load(s, &planes.jitter[1], at) - 0.5);
+                    let (u, v) = (
+                        load(s, &planes.jitter[0], at) - 0.5,
+                        load(s, &planes.jitter[1], at) - 0.5,
+                    );
                     let (mut across, mut down) = ([one; TAPS], [one; TAPS]);
                     for k in 0..TAPS {
                         let tap = k as f32 - reach as f32;
@@ -101,7 +108,9 @@ pub(crate) fn band(k: usize, sums: &[f32], size: [u32; 2], band: &mut [(Plane, &
                     // pixel x of this tile is number x + shift in that tile's row
                     let shift = (tile * WIDTH + MARGIN) as isize - (tx * WIDTH) as isize;
                     let from = (-shift).max(0) as usize;
-                    let to = (area.width as isize).min((WIDTH + 2 * MARGIN) as isize - shift).max(0) as usize;
+                    let to = (area.width as isize)
+                        .min((WIDTH + 2 * MARGIN) as isize - shift)
+                        .max(0) as usize;
                     for (channel, row) in row.iter_mut().enumerate() {
                         let line = &sums[channel * CHANNEL + line * STRIDE..][..STRIDE];
                         for x in from..to {
@@ -117,7 +126,8 @@ pub(crate) fn band(k: usize, sums: &[f32], size: [u32; 2], band: &mut [(Plane, &
                         for x in 0..area.width {
                             for c in 0..3 {
                                 // the filter's negative lobes can make a dark pixel beside a bright one less than black
-                                numbers[(at + x) * 3 + c] = (row[c][x] / row[4][x].max(1e-6)).max(0.0);
+                                numbers[(at + x) * 3 + c] =
+                                    (row[c][x] / row[4][x].max(1e-6)).max(0.0);
                             }
                         }
                     }

@@ -21,12 +21,18 @@ pub(crate) fn sobol(index: u32) -> [u32; 2] {
 /// Two random numbers of a pixel: the generator pcg3d (Jarzynski and Olano 2020).
 #[inline(always)]
 pub(crate) fn scramble(x: u32, y: u32, seed: u32) -> [u32; 2] {
-    let mut v = [x, y, seed].map(#[inline(always)] |c| c.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
+    let mut v = [x, y, seed].map(
+        #[inline(always)]
+        |c| c.wrapping_mul(1_664_525).wrapping_add(1_013_904_223),
+    );
     for _ in 0..2 {
         v[0] = v[0].wrapping_add(v[1].wrapping_mul(v[2]));
         v[1] = v[1].wrapping_add(v[2].wrapping_mul(v[0]));
         v[2] = v[2].wrapping_add(v[0].wrapping_mul(v[1]));
-        v = v.map(#[inline(always)] |c| c ^ c >> 16);
+        v = v.map(
+            #[inline(always)]
+            |c| c ^ c >> 16,
+        );
     }
     [v[0], v[1]]
 }
@@ -60,7 +66,10 @@ pub(crate) fn basis<R: Real<Scalar = f32>>(n: Vec3<R>) -> [Vec3<R>; 2] {
     let sign = R::select(n.z.negative(), n.z.lit(-1.0), n.z.lit(1.0));
     let a = -(sign + n.z).recip();
     let b = n.x * n.y * a;
-    [v3(n.x.sq() * a * sign + 1.0, sign * b, -(sign * n.x)), v3(b, sign + n.y.sq() * a, -n.y)]
+    [
+        v3(n.x.sq() * a * sign + 1.0, sign * b, -(sign * n.x)),
+        v3(b, sign + n.y.sq() * a, -n.y),
+    ]
 }
 
 /// Pixels around a sample's own, on each side, that its filter reaches.

@@ -34,7 +34,9 @@ pub(crate) fn arrival<R: Real<Scalar = f32>>(
     shininess: R,
 ) -> Arrival<R> {
     let falloff = match (&light.source, shading) {
-        (Source::Point { .. }, Shading::Phong | Shading::Lambert) => distance.sq().max(1e-12).recip(),
+        (Source::Point { .. }, Shading::Phong | Shading::Lambert) => {
+            distance.sq().max(1e-12).recip()
+        }
         _ => distance.lit(1.0),
     };
     let cosine = n.dot(to).max(0.0);
@@ -58,8 +60,14 @@ pub(crate) fn arrival<R: Real<Scalar = f32>>(
     };
     let (diffuse, gloss) = (diffuse * arriving, gloss * arriving);
     Arrival {
-        diffuse: each(#[inline(always)] |k| diffuse * colour[k]),
-        gloss: each(#[inline(always)] |k| gloss * colour[k]),
+        diffuse: each(
+            #[inline(always)]
+            |k| diffuse * colour[k],
+        ),
+        gloss: each(
+            #[inline(always)]
+            |k| gloss * colour[k],
+        ),
         share: falloff * luminance(colour),
     }
 }
@@ -70,7 +78,10 @@ pub(crate) fn sky<R: Real<Scalar = f32>>(sky: &Sky, y: R) -> Vec3<R> {
     let t = y.abs().min(1.0).sqrt();
     let down = y.negative();
     let (horizon, top, bottom) = (sky.horizon, sky.top - sky.horizon, sky.bottom - sky.horizon);
-    each(#[inline(always)] |k| t * R::select(down, t.lit(bottom[k]), t.lit(top[k])) + horizon[k])
+    each(
+        #[inline(always)]
+        |k| t * R::select(down, t.lit(bottom[k]), t.lit(top[k])) + horizon[k],
+    )
 }
 
 /// What arrives of the sky at an open surface whose normal (or bent normal) has the height `y`: nearly the mean of the sky
@@ -80,7 +91,10 @@ pub(crate) fn ambient<R: Real<Scalar = f32>>(sky: &Sky, y: R) -> Vec3<R> {
     let t = y * 0.5 + 0.5;
     let low = (sky.bottom + sky.horizon) * (0.5 * sky.ambient);
     let rise = (sky.top - sky.bottom) * (0.5 * sky.ambient);
-    each(#[inline(always)] |k| t * rise[k] + low[k])
+    each(
+        #[inline(always)]
+        |k| t * rise[k] + low[k],
+    )
 }
 
 /// What a surface is made of, where materials meet a mixture of them.
@@ -124,7 +138,10 @@ pub(crate) fn colour<R: Real<Scalar = f32>>(
     let tinted = what.albedo * what.metallic + Vec3::splat(dull);
     let cosine = -n.dot(d);
     let mirror = d + n * (cosine * 2.0);
-    let (sharp, wide) = (sky(heavens, mirror.y), ambient(heavens, n.y) / heavens.ambient.max(1e-3));
+    let (sharp, wide) = (
+        sky(heavens, mirror.y),
+        ambient(heavens, n.y) / heavens.ambient.max(1e-3),
+    );
     let rough = what.roughness;
     let seen = sharp * rough.one_minus() + wide * rough;
     let grazing = cosine.clamp01().one_minus().powi(5);
@@ -140,8 +157,8 @@ pub(crate) fn colour<R: Real<Scalar = f32>>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use zeroset_field::number::v3;
     use glam::Vec3 as G;
+    use zeroset_field::number::v3;
     use zeroset_scene::settings::Shadow;
 
     #[test]
@@ -155,22 +172,44 @@ mod tests {
 
     #[test]
     fn lights_follow_their_laws() {
-        let light = |source| Light { source, radiance: G::new(2.0, 1.0, 0.5), shadow: Shadow::None };
+        let light = |source| Light {
+            source,
+            radiance: G::new(2.0, 1.0, 0.5),
+            shadow: Shadow::None,
+        };
         let point = light(Source::Point { position: G::ZERO });
-        let sun = light(Source::Directional { direction: G::NEG_Y });
+        let sun = light(Source::Directional {
+            direction: G::NEG_Y,
+        });
         let n = v3(0.0, 1.0, 0.0f32);
         let to = v3(0.6, 0.8, 0.0f32);
         let d = v3(0.6, -0.8, 0.0f32);
-        let of = |shading, light: &Light, distance| arrival(shading, light, (to, distance), n, d, 1.0, 10.0);
+        let of = |shading, light: &Light, distance| {
+            arrival(shading, light, (to, distance), n, d, 1.0, 10.0)
+        };
         let close = |a: f32, b: f32| assert!((a - b).abs() < 1e-5, "{a} instead of {b}");
         close(of(Shading::Phong, &sun, f32::INFINITY).diffuse.x, 2.0 * 0.8);
         close(of(Shading::Phong, &point, 2.0).diffuse.x, 2.0 * 0.8 / 4.0);
-        close(of(Shading::Lambert, &point, 2.0).diffuse.y, 0.8 / 4.0 / std::f32::consts::PI);
-        close(of(Shading::LambertLegacy, &point, 2.0).diffuse.y, 0.8 / (4.0 * std::f32::consts::PI));
+        close(
+            of(Shading::Lambert, &point, 2.0).diffuse.y,
+            0.8 / 4.0 / std::f32::consts::PI,
+        );
+        close(
+            of(Shading::LambertLegacy, &point, 2.0).diffuse.y,
+            0.8 / (4.0 * std::f32::consts::PI),
+        );
         // the mirror direction: half vector and normal agree
         close(of(Shading::Phong, &sun, f32::INFINITY).gloss.z, 0.5);
         close(of(Shading::Lambert, &sun, f32::INFINITY).gloss.z, 0.0);
-        let behind = arrival(Shading::Phong, &sun, (v3(0.0, -1.0, 0.0), f32::INFINITY), n, d, 1.0, 10.0);
+        let behind = arrival(
+            Shading::Phong,
+            &sun,
+            (v3(0.0, -1.0, 0.0), f32::INFINITY),
+            n,
+            d,
+            1.0,
+            10.0,
+        );
         close(behind.gloss.x + behind.diffuse.x, 0.0);
     }
 }

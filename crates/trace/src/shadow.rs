@@ -23,7 +23,14 @@ impl<S: Simd> Penumbra<S> for Hard {
         0.0
     }
     #[inline(always)]
-    fn darken(self, light: Lanes<S>, _f: Lanes<S>, _t: Lanes<S>, _z: Lanes<S>, _r: Lanes<S>) -> Lanes<S> {
+    fn darken(
+        self,
+        light: Lanes<S>,
+        _f: Lanes<S>,
+        _t: Lanes<S>,
+        _z: Lanes<S>,
+        _r: Lanes<S>,
+    ) -> Lanes<S> {
         light
     }
     #[inline(always)]
@@ -45,7 +52,14 @@ impl<S: Simd> Penumbra<S> for Soft {
         1.0 / self.sharpness
     }
     #[inline(always)]
-    fn darken(self, light: Lanes<S>, f: Lanes<S>, t: Lanes<S>, _z: Lanes<S>, _r: Lanes<S>) -> Lanes<S> {
+    fn darken(
+        self,
+        light: Lanes<S>,
+        f: Lanes<S>,
+        t: Lanes<S>,
+        _z: Lanes<S>,
+        _r: Lanes<S>,
+    ) -> Lanes<S> {
         light.min(f * self.sharpness / t)
     }
     #[inline(always)]
@@ -79,7 +93,14 @@ impl<S: Simd> Penumbra<S> for Closest {
         1.0 / self.sharpness
     }
     #[inline(always)]
-    fn darken(self, light: Lanes<S>, f: Lanes<S>, t: Lanes<S>, z: Lanes<S>, r: Lanes<S>) -> Lanes<S> {
+    fn darken(
+        self,
+        light: Lanes<S>,
+        f: Lanes<S>,
+        t: Lanes<S>,
+        z: Lanes<S>,
+        r: Lanes<S>,
+    ) -> Lanes<S> {
         let (y, d) = closest(f, z, r);
         // a sample within the solid is dark, however close the surface
         let d = Lanes::select(f.below(0.0), f, d);
@@ -105,7 +126,12 @@ impl<S: Simd> Aim<S> for ToLight<'_> {
         }
     }
     #[inline(always)]
-    fn direction(&self, _at: usize, origin: Vec3<Lanes<S>>, _normal: Vec3<Lanes<S>>) -> (Vec3<Lanes<S>>, Lanes<S>) {
+    fn direction(
+        &self,
+        _at: usize,
+        origin: Vec3<Lanes<S>>,
+        _normal: Vec3<Lanes<S>>,
+    ) -> (Vec3<Lanes<S>>, Lanes<S>) {
         towards(self.source, origin)
     }
 }
@@ -114,9 +140,10 @@ impl<S: Simd> Aim<S> for ToLight<'_> {
 #[inline(always)]
 pub(crate) fn towards<R: Real<Scalar = f32>>(source: &Source, p: Vec3<R>) -> (Vec3<R>, R) {
     match source {
-        Source::Directional { direction } => {
-            (constant(p.x, (-*direction).to_array()), p.x.lit(f32::INFINITY))
-        }
+        Source::Directional { direction } => (
+            constant(p.x, (-*direction).to_array()),
+            p.x.lit(f32::INFINITY),
+        ),
         Source::Point { position } => {
             let to = -(p - v3(position.x, position.y, position.z));
             let distance = to.length().max(1e-18);
@@ -127,7 +154,9 @@ pub(crate) fn towards<R: Real<Scalar = f32>>(source: &Source, p: Vec3<R>) -> (Ve
 
 /// Finds how much of `light` reaches every hit: 0 where the surface faces away.
 pub(crate) fn shadows<S: Simd>(s: S, solid: &Solid<'_>, light: &Light, q: &mut Scratch) {
-    let aim = ToLight { source: &light.source };
+    let aim = ToLight {
+        source: &light.source,
+    };
     let all = 0..q.hits.count;
     q.counts.shadow += match light.shadow {
         Shadow::None => unshadowed(s, light, q),
@@ -145,7 +174,11 @@ fn unshadowed<S: Simd>(s: S, light: &Light, q: &mut Scratch) -> u64 {
             for i in (0..hits.count).step_by(S::f32s::LEN) {
                 let (to, _) = towards(&light.source, load3(s, &hits.point, i));
                 let facing = load3(s, &hits.normal, i).dot(to).above(0.0);
-                store(Lanes::select(facing, splat(s, 1.0), splat(s, 0.0)), &mut hits.lit, i);
+                store(
+                    Lanes::select(facing, splat(s, 1.0), splat(s, 0.0)),
+                    &mut hits.lit,
+                    i,
+                );
             }
             0
         },

@@ -151,7 +151,11 @@ pub(crate) fn store_words<S: Simd>(x: S::u32s, column: &mut [u32], i: usize) {
 #[inline(always)]
 pub(crate) fn load3<S: Simd, C: Numbers>(s: S, columns: &[C; 3], i: usize) -> Vec3<Lanes<S>> {
     let [x, y, z] = columns;
-    v3(load(s, x.numbers(), i), load(s, y.numbers(), i), load(s, z.numbers(), i))
+    v3(
+        load(s, x.numbers(), i),
+        load(s, y.numbers(), i),
+        load(s, z.numbers(), i),
+    )
 }
 
 /// Writes the vectors from `i` on.
@@ -194,14 +198,26 @@ pub(crate) fn fma<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Lanes<S> {
 
 /// `origin + direction * t`, fused where the machine can.
 #[inline(always)]
-pub(crate) fn along<S: Simd>(origin: Vec3<Lanes<S>>, direction: Vec3<Lanes<S>>, t: Lanes<S>) -> Vec3<Lanes<S>> {
-    v3(fma(direction.x, t, origin.x), fma(direction.y, t, origin.y), fma(direction.z, t, origin.z))
+pub(crate) fn along<S: Simd>(
+    origin: Vec3<Lanes<S>>,
+    direction: Vec3<Lanes<S>>,
+    t: Lanes<S>,
+) -> Vec3<Lanes<S>> {
+    v3(
+        fma(direction.x, t, origin.x),
+        fma(direction.y, t, origin.y),
+        fma(direction.z, t, origin.z),
+    )
 }
 
 /// The first `n` lanes (all of them where `n` is larger).
 #[inline(always)]
 pub(crate) fn first_lanes<S: Simd>(s: S, n: usize) -> LaneMask<S> {
-    let bits = if n >= S::f32s::LEN { u64::MAX } else { (1 << n) - 1 };
+    let bits = if n >= S::f32s::LEN {
+        u64::MAX
+    } else {
+        (1 << n) - 1
+    };
     LaneMask(S::mask32s::from_bitmask(s, bits))
 }
 
@@ -229,7 +245,11 @@ impl<S: Simd> Chosen<S> {
     #[inline(always)]
     pub(crate) fn new(mask: LaneMask<S>) -> Self {
         let bits = mask.0.to_bitmask();
-        Chosen { mask: mask.0, bits, count: bits.count_ones() as usize }
+        Chosen {
+            mask: mask.0,
+            bits,
+            count: bits.count_ones() as usize,
+        }
     }
 
     /// One bit a lane, set where it is chosen.
@@ -253,7 +273,15 @@ impl<S: Simd> Chosen<S> {
     /// Writes the chosen lanes, closed up, from `at` on. The lanes behind them become garbage.
     #[inline(always)]
     pub(crate) fn put(self, x: Lanes<S>, column: &mut [f32], at: usize) {
-        store(if self.all() { x } else { Lanes(x.0.compress(self.mask)) }, column, at);
+        store(
+            if self.all() {
+                x
+            } else {
+                Lanes(x.0.compress(self.mask))
+            },
+            column,
+            at,
+        );
     }
 
     /// [`Chosen::put`] for vectors.
@@ -267,6 +295,10 @@ impl<S: Simd> Chosen<S> {
     /// [`Chosen::put`] for whole numbers.
     #[inline(always)]
     pub(crate) fn put_words(self, x: S::u32s, column: &mut [u32], at: usize) {
-        store_words::<S>(if self.all() { x } else { x.compress(self.mask) }, column, at);
+        store_words::<S>(
+            if self.all() { x } else { x.compress(self.mask) },
+            column,
+            at,
+        );
     }
 }

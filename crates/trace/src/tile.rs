@@ -30,7 +30,12 @@ impl Area {
         let (width, height) = (width as usize, height as usize);
         let across = width.div_ceil(WIDTH);
         let (x, y) = (index % across * WIDTH, index / across * HEIGHT);
-        Area { x, y, width: WIDTH.min(width - x), height: HEIGHT.min(height - y) }
+        Area {
+            x,
+            y,
+            width: WIDTH.min(width - x),
+            height: HEIGHT.min(height - y),
+        }
     }
 
     /// Tiles of a picture.
@@ -118,6 +123,8 @@ pub(crate) struct Hits {
     pub(crate) first: Box<Sheet>,
     pub(crate) second: Box<Sheet>,
     pub(crate) share: Box<Sheet>,
+    /// How near the orbits of fractals came to their traps.
+    pub(crate) orbit: [Box<Sheet>; 4],
     /// Ambient visibility.
     pub(crate) open: Box<Sheet>,
     /// Mean direction that is not occluded, normalised.
@@ -147,7 +154,12 @@ pub(crate) struct Spans {
 
 impl Spans {
     fn new() -> Spans {
-        Spans { start: Sheet::boxed(), end: Sheet::boxed(), slope: Sheet::boxed(), radius: Sheet::boxed() }
+        Spans {
+            start: Sheet::boxed(),
+            end: Sheet::boxed(),
+            slope: Sheet::boxed(),
+            radius: Sheet::boxed(),
+        }
     }
 }
 
@@ -211,7 +223,11 @@ impl Scratch {
                 word: *WordRow::boxed(),
                 count: 0,
             }),
-            ended: Ended { light: Sheet::boxed(), word: WordSheet::boxed(), count: 0 },
+            ended: Ended {
+                light: Sheet::boxed(),
+                word: WordSheet::boxed(),
+                count: 0,
+            },
             hits: Hits {
                 count: 0,
                 ray: sheet3(),
@@ -228,6 +244,7 @@ impl Scratch {
                 first: Sheet::boxed(),
                 second: Sheet::boxed(),
                 share: Sheet::boxed(),
+                orbit: std::array::from_fn(|_| Sheet::boxed()),
                 open: Sheet::boxed(),
                 bent: sheet3(),
                 lit: Sheet::boxed(),

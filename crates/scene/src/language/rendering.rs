@@ -45,7 +45,7 @@ pub(crate) const ALL: &[Native] = &[
             ),
             slot(
                 "normals",
-                "\"tetrahedron\"",
+                "\"exact\"",
                 "How normals are found: \"tetrahedron\", \"central\", \"samples18\", \"samples26\", \"exact\"."
             ),
             slot(

@@ -41,11 +41,21 @@ impl Plain<'_> {
                 Shadow::None => 1.0,
                 Shadow::Hard => self.hard(probe, at, to, distance, |_| 0.0),
                 Shadow::Soft { sharpness } => self.soft(probe, at, to, distance, sharpness, false),
-                Shadow::SoftClosest { sharpness } => self.soft(probe, at, to, distance, sharpness, true),
+                Shadow::SoftClosest { sharpness } => {
+                    self.soft(probe, at, to, distance, sharpness, true)
+                }
             };
             let (to, distance) = Self::towards(&light.source, at.p);
             let (n, d) = (field(at.normal), field(at.d));
-            let got = arrival(self.settings.shading, light, (field(to), distance), n, d, lit, shininess);
+            let got = arrival(
+                self.settings.shading,
+                light,
+                (field(to), distance),
+                n,
+                d,
+                lit,
+                shininess,
+            );
             sum.diffuse += glam(got.diffuse);
             sum.gloss += glam(got.gloss);
             sum.shadow += got.share * lit;
@@ -65,7 +75,10 @@ impl Plain<'_> {
         stopped: impl Fn(f32) -> f32,
     ) -> f32 {
         let origin = at.p + at.normal * at.offset;
-        let end = self.leave(origin, to, 0.0, at.offset).min(distance).min(self.view.far);
+        let end = self
+            .leave(origin, to, 0.0, at.offset)
+            .min(distance)
+            .min(self.view.far);
         let mut t = at.offset * FIRST;
         for _ in 0..self.settings.max_steps {
             if t >= end {
@@ -81,9 +94,20 @@ impl Plain<'_> {
     }
 
     /// The least `sharpness * f / t` (Tomczak 2012, algorithm 3.3), or with the closest place between samples (Aaltonen 2018).
-    fn soft(&self, probe: &mut impl Probe, at: &Surface, to: Vec3, distance: f32, sharpness: f32, aaltonen: bool) -> f32 {
+    fn soft(
+        &self,
+        probe: &mut impl Probe,
+        at: &Surface,
+        to: Vec3,
+        distance: f32,
+        sharpness: f32,
+        aaltonen: bool,
+    ) -> f32 {
         let origin = at.p + at.normal * at.offset;
-        let end = self.leave(origin, to, 1.0 / sharpness, at.offset).min(distance).min(self.view.far);
+        let end = self
+            .leave(origin, to, 1.0 / sharpness, at.offset)
+            .min(distance)
+            .min(self.view.far);
         let (mut t, mut light) = (at.offset * FIRST, 1.0f32);
         let mut last: Option<f32> = None;
         for _ in 0..self.settings.max_steps {
@@ -106,8 +130,18 @@ impl Plain<'_> {
     }
 
     /// Ambient visibility and the bent normal.
-    pub(super) fn occlusion(&self, probe: &mut impl Probe, at: &Surface, object: f32, key: [u32; 2]) -> (f32, Vec3) {
-        let chosen = self.scene.objects.get(object.max(0.0) as usize).and_then(|o| o.occlusion);
+    pub(super) fn occlusion(
+        &self,
+        probe: &mut impl Probe,
+        at: &Surface,
+        object: f32,
+        key: [u32; 2],
+    ) -> (f32, Vec3) {
+        let chosen = self
+            .scene
+            .objects
+            .get(object.max(0.0) as usize)
+            .and_then(|o| o.occlusion);
         let up = Vec3::from(UP);
         let mut f = |p: Vec3| at.side * probe.value(p);
         let open = match chosen.unwrap_or(self.settings.occlusion) {
@@ -119,7 +153,12 @@ impl Plain<'_> {
                 };
                 1.0 - (scale * (1..=steps).map(part).sum::<f32>()).clamp(0.0, 1.0)
             }
-            Occlusion::Bent { steps, step, scale, bend } => {
+            Occlusion::Bent {
+                steps,
+                step,
+                scale,
+                bend,
+            } => {
                 let (mut n, mut sum) = (at.normal, 0.0);
                 for k in 1..=steps {
                     let far = k as f32 * step;
@@ -134,11 +173,17 @@ impl Plain<'_> {
                     let far = step * (1 << k) as f32;
                     weight * (far - f(at.p + n * far))
                 };
-                (-scale * EVANS.iter().enumerate().map(part).sum::<f32>()).min(0.0).exp()
+                (-scale * EVANS.iter().enumerate().map(part).sum::<f32>())
+                    .min(0.0)
+                    .exp()
             }
-            Occlusion::Upward { scale } => 1.0 - (scale * (1.0 - at.normal.dot(up))).clamp(0.0, 1.0),
+            Occlusion::Upward { scale } => {
+                1.0 - (scale * (1.0 - at.normal.dot(up))).clamp(0.0, 1.0)
+            }
             Occlusion::Cones { reach, steps } => return cones(&mut f, at, reach, steps),
-            Occlusion::Hemisphere { rays, reach } => self.hemisphere(probe, at, rays, reach, key, |_| 0.0),
+            Occlusion::Hemisphere { rays, reach } => {
+                self.hemisphere(probe, at, rays, reach, key, |_| 0.0)
+            }
             Occlusion::Obscurance { rays, reach, tau } => {
                 self.hemisphere(probe, at, rays, reach, key, |t| 1.0 - (-tau * t).exp())
             }
@@ -181,5 +226,8 @@ fn cones(f: &mut impl FnMut(Vec3) -> f32, at: &Surface, reach: f32, steps: u32) 
         bent += to * (least * cosine);
         total += cosine;
     }
-    (open / total, (bent + at.normal * 1e-3).normalize_or(at.normal))
+    (
+        open / total,
+        (bent + at.normal * 1e-3).normalize_or(at.normal),
+    )
 }

@@ -26,10 +26,19 @@ impl Plain<'_> {
     pub(super) fn march(&self, probe: &mut impl Probe, o: Vec3, d: Vec3) -> Found {
         let (a, b) = (field(o), field(d));
         let wide = self.view.threshold;
-        let start = self.region.enter(a, b, wide.slope, wide.constant).max(self.view.near);
-        let end = self.region.leave(a, b, wide.slope, wide.constant).min(self.view.far);
+        let start = self
+            .region
+            .enter(a, b, wide.slope, wide.constant)
+            .max(self.view.near);
+        let end = self
+            .region
+            .leave(a, b, wide.slope, wide.constant)
+            .min(self.view.far);
         if start >= end {
-            return Found { hit: None, steps: 0 };
+            return Found {
+                hit: None,
+                steps: 0,
+            };
         }
         let mut steps = 0;
         let mut at = |t: f32| {
@@ -39,7 +48,13 @@ impl Plain<'_> {
         let first = at(start);
         let side = if first < 0.0 { -1.0 } else { 1.0 };
         let threshold = |t: f32| wide.at(t);
-        let mut ray = Ray { t: start, r: side * first, end, left: self.settings.max_steps.max(1) - 1, best: None };
+        let mut ray = Ray {
+            t: start,
+            r: side * first,
+            end,
+            left: self.settings.max_steps.max(1) - 1,
+            best: None,
+        };
         let mut f = |t: f32| side * at(t);
         let found = match self.settings.march {
             March::Fixed { step } => ray.fixed(&mut f, step, threshold),
@@ -52,14 +67,27 @@ impl Plain<'_> {
             Way::Hit(t, f) => Some(Ending { t, f, side }),
             Way::Left => None,
             // Keinert 2014, 3.2: the candidate with the smallest sphere on the picture, or else the last place
-            Way::Spent if self.settings.hit_selection => ray.best.map(|(_, t, f)| Ending { t, f, side }),
-            Way::Spent => Some(Ending { t: ray.t, f: ray.r, side }),
+            Way::Spent if self.settings.hit_selection => {
+                ray.best.map(|(_, t, f)| Ending { t, f, side })
+            }
+            Way::Spent => Some(Ending {
+                t: ray.t,
+                f: ray.r,
+                side,
+            }),
         };
         Found { hit, steps }
     }
 
     /// The normal at a hit, on the side that was marched.
-    pub(super) fn normal(&self, probe: &mut impl Probe, p: Vec3, d: Vec3, t: f32, side: f32) -> Vec3 {
+    pub(super) fn normal(
+        &self,
+        probe: &mut impl Probe,
+        p: Vec3,
+        d: Vec3,
+        t: f32,
+        side: f32,
+    ) -> Vec3 {
         let h = step(field(p), self.view.pixel.at(t));
         let mut sum = |samples: &[[f32; 3]]| {
             let part = |to: &[f32; 3]| {
@@ -131,13 +159,20 @@ impl Ray {
     }
 
     /// Sphere tracing, over-relaxed until the first gap (Keinert 2014, listing 2 corrected). With `omega` 1 there are none.
-    fn relaxed(&mut self, f: &mut impl FnMut(f32) -> f32, mut omega: f32, threshold: impl Fn(f32) -> f32 + Copy) -> Way {
+    fn relaxed(
+        &mut self,
+        f: &mut impl FnMut(f32) -> f32,
+        mut omega: f32,
+        threshold: impl Fn(f32) -> f32 + Copy,
+    ) -> Way {
         loop {
             if let Some(way) = self.settled(threshold) {
                 return way;
             }
             let mut z = (self.r * omega).min(self.end - self.t);
-            let Some(mut next) = self.sample(f, z) else { return Way::Spent };
+            let Some(mut next) = self.sample(f, z) else {
+                return Way::Spent;
+            };
             if z > self.r && z > self.r + next {
                 omega = 1.0;
                 z = self.r.min(self.end - self.t);
@@ -151,7 +186,12 @@ impl Ray {
     }
 
     /// The planar guess (Balint and Valasek 2018).
-    fn enhanced(&mut self, f: &mut impl FnMut(f32) -> f32, share: f32, threshold: impl Fn(f32) -> f32 + Copy) -> Way {
+    fn enhanced(
+        &mut self,
+        f: &mut impl FnMut(f32) -> f32,
+        share: f32,
+        threshold: impl Fn(f32) -> f32 + Copy,
+    ) -> Way {
         let mut last: Option<(f32, f32)> = None;
         loop {
             if let Some(way) = self.settled(threshold) {
@@ -162,7 +202,9 @@ impl Ray {
                 self.r + share * self.r * ((d - r0 + self.r) / behind).max(0.0)
             });
             let mut z = guess.min(self.end - self.t);
-            let Some(mut next) = self.sample(f, z) else { return Way::Spent };
+            let Some(mut next) = self.sample(f, z) else {
+                return Way::Spent;
+            };
             if z > self.r && z > self.r + next {
                 z = self.r.min(self.end - self.t);
                 match self.sample(f, z) {
@@ -176,14 +218,21 @@ impl Ray {
     }
 
     /// The smoothed slope (Ban and Valasek 2023).
-    fn auto(&mut self, f: &mut impl FnMut(f32) -> f32, beta: f32, threshold: impl Fn(f32) -> f32 + Copy) -> Way {
+    fn auto(
+        &mut self,
+        f: &mut impl FnMut(f32) -> f32,
+        beta: f32,
+        threshold: impl Fn(f32) -> f32 + Copy,
+    ) -> Way {
         let mut m = -1.0f32;
         loop {
             if let Some(way) = self.settled(threshold) {
                 return way;
             }
             let z = (self.r * (2.0 / (1.0 - m)).max(1.0)).min(self.end - self.t);
-            let Some(next) = self.sample(f, z) else { return Way::Spent };
+            let Some(next) = self.sample(f, z) else {
+                return Way::Spent;
+            };
             if z > self.r && z > self.r + next {
                 m = -1.0;
                 continue;
@@ -195,7 +244,12 @@ impl Ray {
     }
 
     /// Constant steps, then bisection (Tomczak 2012, algorithm 2.1; Munini 2021, 3.2).
-    fn fixed(&mut self, f: &mut impl FnMut(f32) -> f32, step: f32, threshold: impl Fn(f32) -> f32 + Copy) -> Way {
+    fn fixed(
+        &mut self,
+        f: &mut impl FnMut(f32) -> f32,
+        step: f32,
+        threshold: impl Fn(f32) -> f32 + Copy,
+    ) -> Way {
         loop {
             let limit = threshold(self.t);
             let size = self.r.abs() / limit;
@@ -206,7 +260,9 @@ impl Ray {
                 return Way::Left;
             }
             let z = step.min(self.end - self.t);
-            let Some(next) = self.sample(f, z) else { return Way::Spent };
+            let Some(next) = self.sample(f, z) else {
+                return Way::Spent;
+            };
             if next < 0.0 {
                 return self.bisect(f, z, threshold);
             }
@@ -215,12 +271,19 @@ impl Ray {
     }
 
     /// Halves the last step, in which the sign changed.
-    fn bisect(&mut self, f: &mut impl FnMut(f32) -> f32, z: f32, threshold: impl Fn(f32) -> f32) -> Way {
+    fn bisect(
+        &mut self,
+        f: &mut impl FnMut(f32) -> f32,
+        z: f32,
+        threshold: impl Fn(f32) -> f32,
+    ) -> Way {
         let (mut outside, mut inside) = (self.t, self.t + z);
         let mut value = self.r;
         while 0.5 * (inside - outside) >= 0.5 * threshold(inside) {
             self.t = 0.5 * (outside + inside);
-            let Some(next) = self.sample(f, 0.0) else { return Way::Spent };
+            let Some(next) = self.sample(f, 0.0) else {
+                return Way::Spent;
+            };
             value = next;
             if next < 0.0 {
                 inside = self.t;

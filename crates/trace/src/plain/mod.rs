@@ -103,7 +103,11 @@ impl Plain<'_> {
         let (o, d) = (glam(o), glam(d));
         let found = self.march(probe, o, d);
         let Some(end) = found.hit else {
-            return Sample { colour: glam(sky(&self.scene.sky, d.y)), hit: None, steps: found.steps };
+            return Sample {
+                colour: glam(sky(&self.scene.sky, d.y)),
+                hit: None,
+                steps: found.steps,
+            };
         };
         let (mut t, side) = (end.t, end.side);
         for _ in 0..self.settings.discontinuity_reduction {
@@ -115,15 +119,28 @@ impl Plain<'_> {
         let offset = 2.0 * end.f.abs().max(self.view.threshold.at(t));
         let normal = self.normal(probe, p, d, t, side);
         let mark = probe.marks(p);
-        let surface = Surface { p, normal, side, offset, d };
-        let key = scramble(x, y, self.settings.seed ^ (index + 1).wrapping_mul(0x9e37_79b9));
+        let surface = Surface {
+            p,
+            normal,
+            side,
+            offset,
+            d,
+        };
+        let key = scramble(
+            x,
+            y,
+            self.settings.seed ^ (index + 1).wrapping_mul(0x9e37_79b9),
+        );
         let (open, bent) = self.occlusion(probe, &surface, mark.object, key);
         let samples = match self.settings.antialias {
             Antialias::None => 1.0,
             Antialias::Supersample { samples, .. } => samples.max(1) as f32,
         };
         let pixel = self.view.pixel.at(t) / samples.sqrt();
-        let (what, shininess) = self.substance(&mark, &Place::new(field(p), field(normal), field(d), pixel));
+        let (what, shininess) = {
+            let place = Place::new(field(p), field(normal), field(d), pixel);
+            self.substance(&mark, &place.with_orbit(mark.orbit))
+        };
         let light = self.light(probe, &surface, shininess);
         let c = colour(
             self.settings.shading,
@@ -145,11 +162,19 @@ impl Plain<'_> {
             shadow: light.shadow,
             object: mark.object + 1.0,
         };
-        Sample { colour: glam(c), hit: Some(hit), steps: found.steps }
+        Sample {
+            colour: glam(c),
+            hit: Some(hit),
+            steps: found.steps,
+        }
     }
 
     fn material(&self, number: f32) -> &Material {
-        let at = if number >= 0.0 { number as usize } else { usize::MAX };
+        let at = if number >= 0.0 {
+            number as usize
+        } else {
+            usize::MAX
+        };
         self.scene.materials.get(at).unwrap_or(&self.fallback)
     }
 
@@ -175,7 +200,10 @@ impl Plain<'_> {
             metallic: a.metallic + b.metallic,
             roughness: a.roughness + b.roughness,
         };
-        (mixed, first.shininess + (second.shininess - first.shininess) * mark.share)
+        (
+            mixed,
+            first.shininess + (second.shininess - first.shininess) * mark.share,
+        )
     }
 
     /// Filters the samples, row by row, pixel by pixel.
@@ -190,7 +218,8 @@ impl Plain<'_> {
         for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
             let at = (y * width + x) as usize;
             let (mut sum, mut cover, mut weights) = (Vec3::ZERO, 0.0, 0.0);
-            for (dy, dx) in (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dy, dx))) {
+            for (dy, dx) in (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dy, dx)))
+            {
                 let (sx, sy) = (x as i32 + dx, y as i32 + dy);
                 if sx < 0 || sy < 0 || sx >= width as i32 || sy >= height as i32 {
                     continue;
@@ -198,7 +227,8 @@ impl Plain<'_> {
                 for i in 0..samples {
                     let [u, v] = self.jitter(sx as u32, sy as u32, i);
                     let sample = &rows[sy as usize][(sx as u32 * samples + i) as usize];
-                    let w = weight(filter, u - 0.5 + dx as f32) * weight(filter, v - 0.5 + dy as f32);
+                    let w =
+                        weight(filter, u - 0.5 + dx as f32) * weight(filter, v - 0.5 + dy as f32);
                     sum += sample.colour * w;
                     cover += if sample.hit.is_some() { w } else { 0.0 };
                     weights += w;
@@ -206,7 +236,13 @@ impl Plain<'_> {
             }
             let own = &rows[y as usize][(x * samples) as usize..][..samples as usize];
             let colour = (sum / weights.max(1e-6)).max(Vec3::ZERO);
-            write(&mut film, at, colour, (cover / weights.max(1e-6)).clamp(0.0, 1.0), own);
+            write(
+                &mut film,
+                at,
+                colour,
+                (cover / weights.max(1e-6)).clamp(0.0, 1.0),
+                own,
+            );
         }
         film
     }
@@ -217,7 +253,11 @@ fn write(film: &mut Film, at: usize, colour: Vec3, coverage: f32, samples: &[Sam
     let hits: Vec<&Hit> = samples.iter().filter_map(|s| s.hit.as_ref()).collect();
     let nearest = hits.iter().copied().min_by(|a, b| a.t.total_cmp(&b.t));
     let mean = |f: fn(&Hit) -> f32| {
-        if hits.is_empty() { 1.0 } else { hits.iter().map(|h| f(h)).sum::<f32>() / hits.len() as f32 }
+        if hits.is_empty() {
+            1.0
+        } else {
+            hits.iter().map(|h| f(h)).sum::<f32>() / hits.len() as f32
+        }
     };
     let normal: Vec3 = hits.iter().map(|h| h.normal).sum();
     let albedo: Vec3 = hits.iter().map(|h| h.albedo).sum();
@@ -229,7 +269,10 @@ fn write(film: &mut Film, at: usize, colour: Vec3, coverage: f32, samples: &[Sam
     put(Plane::Coverage, &[coverage]);
     put(Plane::Depth, &[nearest.map_or(f32::INFINITY, |h| h.t)]);
     put(Plane::Normal, &normal.normalize_or_zero().to_array());
-    put(Plane::Albedo, &(albedo / hits.len().max(1) as f32).to_array());
+    put(
+        Plane::Albedo,
+        &(albedo / hits.len().max(1) as f32).to_array(),
+    );
     put(Plane::Occlusion, &[mean(|h| h.open)]);
     put(Plane::Shadow, &[mean(|h| h.shadow)]);
     put(Plane::Steps, &[steps]);

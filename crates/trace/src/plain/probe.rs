@@ -17,6 +17,8 @@ pub struct Mark {
     pub second: f32,
     /// Share of the second.
     pub share: f32,
+    /// How near the orbit of a fractal came to its traps.
+    pub orbit: [f32; 4],
 }
 
 /// Evaluates a field, one point at a time.
@@ -69,7 +71,13 @@ impl Probe for Compiled<'_> {
         }
         dispatch!(Level::new(), s => eval::marks(s, self.program, work, 1));
         let m = work.marks();
-        Mark { object: m.object.0[0], first: m.first.0[0], second: m.second.0[0], share: m.share.0[0] }
+        Mark {
+            object: m.object.0[0],
+            first: m.first.0[0],
+            second: m.second.0[0],
+            share: m.share.0[0],
+            orbit: std::array::from_fn(|k| m.orbit[k].0[0]),
+        }
     }
 }
 
@@ -89,6 +97,12 @@ impl<F: Fn(Vec3) -> f32> Probe for Formula<F> {
     }
 
     fn marks(&mut self, _p: Vec3) -> Mark {
-        Mark { object: 0.0, first: 0.0, second: -1.0, share: 0.0 }
+        Mark {
+            object: 0.0,
+            first: 0.0,
+            second: -1.0,
+            share: 0.0,
+            orbit: [0.0; 4],
+        }
     }
 }

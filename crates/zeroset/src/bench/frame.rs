@@ -67,7 +67,10 @@ pub(crate) fn frame(scene: &Scene, threads: usize) -> Result<Frames, RenderError
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
-        .map_err(|e| RenderError::Threads { threads, reason: e.to_string() })?;
+        .map_err(|e| RenderError::Threads {
+            threads,
+            reason: e.to_string(),
+        })?;
     let size = scene.settings.size;
     let mut film = Film::with(size[0], size[1], &[Plane::Colour]);
     let (mut streamed, mut plain_time) = (f64::MAX, f64::MAX);

@@ -58,19 +58,36 @@ pub(crate) fn march(scene: &Scene) -> Result<Marches, RenderError> {
         missed_hits: BTreeMap::new(),
     };
     for (name, march, prepass) in marchers() {
-        let max_steps = if matches!(march, March::Fixed { .. }) { 5000 } else { scene.settings.max_steps };
-        scene.settings = Settings { march, prepass, max_steps, ..scene.settings };
+        let max_steps = if matches!(march, March::Fixed { .. }) {
+            5000
+        } else {
+            scene.settings.max_steps
+        };
+        scene.settings = Settings {
+            march,
+            prepass,
+            max_steps,
+            ..scene.settings
+        };
         let frame = renderer.render(&scene, &Silent)?;
         let e = frame.statistics.evaluations;
         let per_ray = (e.march + e.prepass) as f64 / found.rays as f64;
         found.evaluations_per_ray.insert(name.into(), per_ray);
         let depth = frame.film.plane(Plane::Depth);
-        let missed = solid.iter().zip(depth).filter(|(solid, t)| **solid && !t.is_finite()).count();
+        let missed = solid
+            .iter()
+            .zip(depth)
+            .filter(|(solid, t)| **solid && !t.is_finite())
+            .count();
         found.missed_hits.insert(name.into(), missed as u64);
         scene.settings.max_steps = Settings::default().max_steps;
     }
     let sphere = found.evaluations_per_ray["sphere"];
-    found.share_of_sphere = found.evaluations_per_ray.iter().map(|(name, e)| (name.clone(), e / sphere)).collect();
+    found.share_of_sphere = found
+        .evaluations_per_ray
+        .iter()
+        .map(|(name, e)| (name.clone(), e / sphere))
+        .collect();
     Ok(found)
 }
 
@@ -88,7 +105,13 @@ fn surely_hit(renderer: &CpuRenderer, scene: &Scene) -> Result<Vec<bool>, Render
     // corners are shared by pixels
     let corners: Vec<bool> = (0..(SIDE + 1) * (SIDE + 1))
         .into_par_iter()
-        .map(|i| hits(&scene.camera, (i % (SIDE + 1)) as f32, (i / (SIDE + 1)) as f32))
+        .map(|i| {
+            hits(
+                &scene.camera,
+                (i % (SIDE + 1)) as f32,
+                (i / (SIDE + 1)) as f32,
+            )
+        })
         .collect();
     Ok((0..SIDE * SIDE)
         .into_par_iter()

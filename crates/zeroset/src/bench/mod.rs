@@ -27,7 +27,16 @@ pub(crate) fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
         Measure::Eval(what) => {
             let scene = match &what.scene {
                 Some(path) => loaded(path)?,
-                None => load_text("bench.star", SCENE, Language::Starlark, None, &Options::default())?.scene,
+                None => {
+                    load_text(
+                        "bench.star",
+                        SCENE,
+                        Language::Starlark,
+                        None,
+                        &Options::default(),
+                    )?
+                    .scene
+                }
             };
             let invalid = |error: String| Failure::new(Exit::Scene, error);
             let field = scene.field().map_err(|error| invalid(error.to_string()))?;
@@ -62,7 +71,9 @@ pub(crate) fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
             }
             let row = |(name, evaluations): (&String, &f64)| {
                 let (share, missed) = (found.share_of_sphere[name], found.missed_hits[name]);
-                format!("{name:16} {evaluations:8.2} evaluations a ray, {share:5.2} of sphere, {missed} hits missed")
+                format!(
+                    "{name:16} {evaluations:8.2} evaluations a ray, {share:5.2} of sphere, {missed} hits missed"
+                )
             };
             let rows: Vec<String> = found.evaluations_per_ray.iter().map(row).collect();
             console.print(&rows.join("\n"))
@@ -105,7 +116,11 @@ pub(crate) fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
 fn sphere_box_ground() -> Scene {
     let mut scene = trace::bench::sphere_box_ground();
     scene.settings = Settings {
-        occlusion: Occlusion::Quilez { steps: 5, step: 0.12, scale: 1.5 },
+        occlusion: Occlusion::Quilez {
+            steps: 5,
+            step: 0.12,
+            scale: 1.5,
+        },
         antialias: Antialias::None,
         normals: Normals::Exact,
         ..scene.settings

@@ -1,0 +1,152 @@
+//! Every scene of `scenes/` renders, and looks as it did when somebody last judged it by eye.
+//!
+//! A picture that differs is written to the target folder beside its difference, and the message says how to bless it:
+//! `ZEROSET_BLESS=1 cargo test -p zeroset --test golden`. Look at it first.
+
+use std::path::{Path, PathBuf};
+use zeroset::output::compare::compare;
+use zeroset::output::format::Notes;
+use zeroset::output::format::png::Depth;
+use zeroset::output::format::read::read;
+use zeroset::output::picture::Picture;
+use zeroset::scene::film::{Film, Plane};
+use zeroset::scene::load::{Options, load};
+use zeroset::scene::render::{Renderer, Silent};
+use zeroset::scene::settings::Antialias;
+use zeroset::trace::CpuRenderer;
+
+/// Side of the pictures.
+const SIDE: u32 = 96;
+/// FLIP's mean error that a picture may have: rounding moves a hit here and there, a wrong method moves everything.
+const ALLOWED: f64 = 0.01;
+
+fn folder(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+/// The scenes of a folder of `scenes/`, sorted.
+fn scenes(group: &str) -> Vec<PathBuf> {
+    let read = std::fs::read_dir(folder("../../scenes").join(group)).unwrap();
+    let mut found: Vec<PathBuf> = (read.map(|entry| entry.unwrap().path()))
+        .filter(|path| path.extension().is_some_and(|e| e == "star"))
+        .collect();
+    found.sort();
+    found
+}
+
+fn render(path: &Path) -> Film {
+    let options = Options {
+        size: Some([SIDE, SIDE]),
+        ..Options::default()
+    };
+    let mut scene = load(path, &options)
+        .unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+        .scene;
+    scene.settings.antialias = Antialias::None;
+    CpuRenderer::new(None)
+        .unwrap()
+        .render(&scene, &Silent)
+        .unwrap()
+        .film
+}
+
+fn save(path: &Path, picture: &Picture) {
+    zeroset::output::atomic::create_folder(path.parent().unwrap()).unwrap();
+    zeroset::output::atomic::write_atomically(path, |writer| {
+        zeroset::output::format::png::write(writer, picture, Depth::Eight, &Notes::new("golden"))
+    })
+    .unwrap();
+}
+
+/// Holds the picture of a scene against the one that was judged; the message if it differs.
+fn check(path: &Path, group: &str, film: &Film) -> Result<(), String> {
+    let name = format!(
+        "{group}/{}.png",
+        path.file_stem().unwrap().to_string_lossy()
+    );
+    let golden = folder("tests/golden").join(&name);
+    let picture = Picture::develop(film, 0.0);
+    if std::env::var_os("ZEROSET_BLESS").is_some() {
+        save(&golden, &picture);
+    }
+    let kept = read(&golden).map_err(|e| format!("{name}: {e}"))?;
+    let found = compare(&kept, &picture).map_err(|e| format!("{name}: {e}"))?;
+    if found.flip_mean <= ALLOWED {
+        return Ok(());
+    }
+    let new = Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("golden")
+        .join(&name);
+    save(&new, &picture);
+    Err(format!(
+        "{name}: FLIP {:.4}, allowed {ALLOWED}; the new picture is {}",
+        found.flip_mean,
+        new.display()
+    ))
+}
+
+fn all(group: &str) {
+    let failures: Vec<String> = (scenes(group).iter())
+        .filter_map(|path| check(path, group, &render(path)).err())
+        .collect();
+    assert!(
+        failures.is_empty(),
+        "{}\nlook at the new pictures, then: ZEROSET_BLESS=1 cargo test -p zeroset --test golden",
+        failures.join("\n")
+    );
+}
+
+#[test]
+fn the_papers_scenes_look_as_judged() {
+    all("papers");
+}
+
+#[test]
+fn the_first_scene_looks_as_judged() {
+    all("");
+}
+
+#[test]
+fn every_scene_of_the_gallery_renders_something() {
+    for path in scenes("gallery") {
+        let film = render(&path);
+        let hit = film
+            .plane(Plane::Coverage)
+            .iter()
+            .filter(|c| **c > 0.5)
+            .count();
+        let share = hit as f64 / f64::from(SIDE * SIDE);
+        assert!(
+            share > 0.1,
+            "{}: only {share} of the picture is covered",
+            path.display()
+        );
+        let colours = film.plane(Plane::Colour);
+        assert!(
+            colours.iter().all(|c| c.is_finite() && *c >= 0.0),
+            "{}: a colour is no number",
+            path.display()
+        );
+    }
+}
+
+/// The comparison can fail: a picture with another sun is not the golden one.
+#[test]
+fn a_wrong_light_is_noticed() {
+    let path = folder("../../scenes/papers/tomczak_sphere_ground_1.star");
+    let options = Options {
+        size: Some([SIDE, SIDE]),
+        ..Options::default()
+    };
+    let mut scene = load(&path, &options).unwrap().scene;
+    scene.settings.antialias = Antialias::None;
+    scene.lights[0].radiance *= 0.9;
+    let film = CpuRenderer::new(None)
+        .unwrap()
+        .render(&scene, &Silent)
+        .unwrap()
+        .film;
+    let golden = read(&folder("tests/golden/papers/tomczak_sphere_ground_1.png")).unwrap();
+    let found = compare(&golden, &Picture::develop(&film, 0.0)).unwrap();
+    assert!(found.flip_mean > ALLOWED, "FLIP {}", found.flip_mean);
+}
