@@ -16,6 +16,8 @@ use crate::settings::{Occlusion, Settings};
 use glam::{DMat3, DVec3};
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
+use std::sync::Arc;
+use std::time::Instant;
 use zeroset_field::catalogue::entries::catalogue;
 use zeroset_field::catalogue::{Dimension, Info, Kind, Param, Unit};
 use zeroset_field::field::{Field, FieldError, Paint};
@@ -34,6 +36,7 @@ pub(crate) fn read(draft: &mut Draft, limits: &Limits) -> Result<(), Box<Report>
         nodes: 0,
         materials: 0,
         limits: *limits,
+        start: Instant::now(),
     };
     reader
         .scene(&value, draft, &source)
@@ -71,6 +74,7 @@ struct Reader {
     /// Number of materials.
     materials: usize,
     limits: Limits,
+    start: Instant,
 }
 
 /// The members of an object, none of them unknown.
@@ -467,11 +471,20 @@ impl Reader {
                     .ok_or_else(|| problem("paint needs a `material`"))?;
                 made(self.of(body)?.paint(paint))
             }
+            "formula" => {
+                let map = members(body, "formula", &["steps", "bounds", "slope", "proven"])?;
+                // a proof takes up to a tenth of a second
+                if self.start.elapsed().as_secs_f64() > self.limits.seconds {
+                    let seconds = self.limits.seconds;
+                    return Err(problem(format!("loading takes longer than {seconds} seconds (limit `seconds`)")));
+                }
+                Ok(Field::formula(Arc::new(super::formula::read(map)?)))
+            }
             _ => {
                 let names: Vec<&str> = all
                     .infos()
                     .map(|i| i.name)
-                    .chain(["place", "repeat", "polar", "paint", "part"])
+                    .chain(["place", "repeat", "polar", "paint", "formula", "part"])
                     .collect();
                 Err(problem(format!("there is no field `{name}`"))
                     .maybe_help(suggestion(name, names.iter().copied())))

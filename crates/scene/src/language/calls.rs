@@ -100,7 +100,11 @@ impl<'a> Machine<'a> {
     ) -> Run<Value> {
         match callee {
             Value::Function(i) => self.call_function(i, arguments, place),
-            Value::Native(native) => self.call_native(native, Value::None, arguments, place),
+            Value::Native(native) => match self.formula_function(native.name, &arguments) {
+                Some(function) => self.call_formula(function, &arguments, place),
+                None => self.call_native(native, Value::None, arguments, place),
+            },
+            Value::Formula(function) => self.call_formula(function, &arguments, place),
             Value::Primitive(entry) => {
                 let params = entry.info.params.iter().map(|p| p.name).collect();
                 let mut call = Call::bind(
@@ -115,6 +119,9 @@ impl<'a> Machine<'a> {
                 fields::primitive(&mut call, entry)
             }
             Value::Join(entry) => {
+                if let Some(function) = self.formula_function(entry.info.name, &arguments) {
+                    return self.call_formula(function, &arguments, place);
+                }
                 let arguments = self.gather_fields(arguments)?;
                 let params = std::iter::once("shapes")
                     .chain(entry.info.params.iter().map(|p| p.name))
@@ -259,6 +266,9 @@ impl<'a> Machine<'a> {
 
     /// `object.name` without a call.
     pub(crate) fn attribute(&mut self, object: Value, name: &str) -> Run<Value> {
+        if let Some(part) = self.part_of_formula(object, name) {
+            return part;
+        }
         let (name, method) = self.method(object, name)?;
         self.bound(object, name, method)
     }

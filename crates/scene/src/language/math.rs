@@ -16,6 +16,28 @@ macro_rules! function {
 const X: Slot = slot("x", "", "A number.");
 const Y: Slot = slot("y", "", "A number.");
 
+/// What a function has to do with angles, which are degrees in scene files and radians in formulas.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Angle {
+    /// It takes one.
+    Taken,
+    /// It gives one.
+    Given,
+    /// Nothing.
+    None,
+}
+
+impl Angle {
+    /// Of the function with this name.
+    pub(crate) fn of(name: &str) -> Angle {
+        match name {
+            "sin" | "cos" | "tan" => Angle::Taken,
+            "asin" | "acos" | "atan" | "atan2" => Angle::Given,
+            _ => Angle::None,
+        }
+    }
+}
+
 /// Constants by name.
 pub(crate) const CONSTANTS: &[(&str, f64)] =
     &[("pi", std::f64::consts::PI), ("tau", std::f64::consts::TAU)];

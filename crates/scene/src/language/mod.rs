@@ -14,11 +14,14 @@
 //! | `run`, `calls`, `operators`, `sequences`, `text` | the language itself |
 //! | `builtins`, `methods`, `math` | everyday functions |
 //! | `fields`, `place` | the catalogue as functions and methods |
+//! | `formulas`, `lettering` | fields from formulas and from letters |
 //! | `materials`, `stage`, `rendering`, `parameters` | everything else of a scene |
 
 mod builtins;
 mod calls;
 mod fields;
+mod formulas;
+mod lettering;
 mod machine;
 mod materials;
 mod math;
@@ -56,6 +59,8 @@ use zeroset_field::catalogue::entries::catalogue;
 fn natives() -> impl Iterator<Item = &'static Native> {
     [
         builtins::ALL,
+        formulas::ALL,
+        lettering::ALL,
         math::ALL,
         materials::ALL,
         stage::ALL,
@@ -64,6 +69,11 @@ fn natives() -> impl Iterator<Item = &'static Native> {
     ]
     .into_iter()
     .flatten()
+}
+
+/// Whether a function of this crate that stands alone has this name.
+pub(crate) fn is_native(name: &str) -> bool {
+    natives().any(|n| n.name == name) || catalogue().join(name).is_some()
 }
 
 /// Every name that is there without being defined.
@@ -79,6 +89,7 @@ pub(crate) fn builtins() -> &'static HashMap<&'static str, Value> {
             .iter()
             .map(|e| (e.info.name, Value::Primitive(e))))
         .chain(all.joins.iter().map(|e| (e.info.name, Value::Join(e))))
+        .chain(formulas::more_functions().map(|f| (f.name, Value::Formula(f))))
         .chain(natives().map(|n| (n.name, Value::Native(n))))
         .chain(
             math::CONSTANTS

@@ -38,6 +38,11 @@ fn by_zero() -> Box<Mistake> {
 
 impl<'a> Machine<'a> {
     pub(crate) fn operate(&mut self, op: BinOp, left: Value, right: Value) -> Run<Value> {
+        if matches!(left, Value::Thing(_) | Value::Tuple(_)) || matches!(right, Value::Thing(_) | Value::Tuple(_)) {
+            if let Some(value) = self.operate_formula(op, left, right)? {
+                return Ok(value);
+            }
+        }
         match op {
             BinOp::Equal => return Ok(Value::Bool(self.equal(left, right, 0)?)),
             BinOp::NotEqual => return Ok(Value::Bool(!self.equal(left, right, 0)?)),
@@ -171,7 +176,10 @@ impl<'a> Machine<'a> {
         match value {
             Value::Int(i) => i.checked_neg().map(Value::Int).ok_or_else(overflow),
             Value::Float(x) => Ok(Value::Float(-x)),
-            Value::Thing(_) => self.complement(value),
+            Value::Thing(_) => match self.negate_formula(value) {
+                Some(negated) => negated,
+                None => self.complement(value),
+            },
             other => Err(mistake(format!(
                 "`-` needs a number or a field, not {}",
                 self.store.kind(other)

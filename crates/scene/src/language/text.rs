@@ -89,6 +89,7 @@ impl<'a> Machine<'a> {
             Value::Native(n) => _ = write!(out, "<function {}>", n.name),
             Value::Primitive(e) => _ = write!(out, "<function {}>", e.info.name),
             Value::Join(e) => _ = write!(out, "<function {}>", e.info.name),
+            Value::Formula(f) => _ = write!(out, "<function {}>", f.name),
             Value::Bound(i) => _ = write!(out, "<method {}>", self.store.bound[i as usize].1),
             Value::Thing(i) => match self.store.thing(i) {
                 Thing::Field(field) => _ = write!(out, "<field of {} nodes>", field.facts().nodes),

@@ -11,6 +11,7 @@ use indexmap::IndexMap;
 use std::sync::Arc;
 use zeroset_field::catalogue::entries::{JoinEntry, MapEntry, ModifyEntry, PrimitiveEntry};
 use zeroset_field::field::Field;
+use zeroset_field::formula::{Expression, Function};
 
 /// A value.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +31,8 @@ pub(crate) enum Value {
     Native(&'static Native),
     Primitive(&'static PrimitiveEntry),
     Join(&'static JoinEntry),
+    /// A function of formulas.
+    Formula(&'static Function),
     /// A method with what it belongs to.
     Bound(u32),
     Thing(u32),
@@ -57,6 +60,8 @@ pub(crate) enum Thing {
     /// `none()`, which several settings take.
     Nothing,
     Orthographic(f64),
+    /// A value of a formula that is being written down.
+    Expression(Expression),
 }
 
 impl Thing {
@@ -72,6 +77,7 @@ impl Thing {
             Thing::Antialias(_) => "an antialiasing method",
             Thing::Nothing => "none()",
             Thing::Orthographic(_) => "an orthographic lens",
+            Thing::Expression(_) => "a value of a formula",
         }
     }
 }
@@ -177,6 +183,7 @@ impl Store {
             | Value::Native(_)
             | Value::Primitive(_)
             | Value::Join(_)
+            | Value::Formula(_)
             | Value::Bound(_) => "a function",
             Value::Thing(i) => self.thing(i).kind(),
         }
