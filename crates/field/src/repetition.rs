@@ -38,18 +38,18 @@ impl Repetition {
         if !(0..3).any(|k| self.spacing[k] > 0.0) {
             return Err("give a spacing above 0 along at least one axis".into());
         }
-        for k in 0..3 {
+        for (k, axis) in axes.into_iter().enumerate() {
             let (c, v) = (self.spacing[k], self.vary[k]);
             if !(0.0..=1e6).contains(&c) || !(0.0..=1e6).contains(&v) {
                 return Err(format!(
                     "spacing and vary along {} must be 0 to 1e6, not {c} and {v}",
-                    axes[k]
+                    axis
                 ));
             }
             if self.count[k] > MAX_COPIES {
                 return Err(format!(
                     "{} copies along {}: at most {MAX_COPIES}",
-                    self.count[k], axes[k]
+                    self.count[k], axis
                 ));
             }
             if !self.repeats(k) {
@@ -59,14 +59,14 @@ impl Repetition {
             if !shape.is_empty() && !(-lo.min(0.0)).max(hi.max(0.0)).is_finite() {
                 return Err(format!(
                     "the shape has no end along {}: intersect it with a box first",
-                    axes[k]
+                    axis
                 ));
             }
             if !shape.is_empty() && (hi > 0.95 * c || lo < -0.95 * c) {
                 return Err(format!(
                     "along {} the shape reaches from {lo:.4} to {hi:.4} with its random offset, which must lie within \
                      0.95 of the spacing {c}: use a spacing of at least {:.4}",
-                    axes[k],
+                    axis,
                     hi.max(-lo) / 0.95
                 ));
             }

@@ -6,7 +6,13 @@ use zeroset_scene::json::{expand, to_text};
 use zeroset_scene::load::{Language, Loaded, Options, load_text};
 
 fn load(text: &str) -> Result<Loaded, String> {
-    let result = load_text("scene.star", text, Language::Starlark, None, &Options::default());
+    let result = load_text(
+        "scene.star",
+        text,
+        Language::Starlark,
+        None,
+        &Options::default(),
+    );
     result.map_err(|f| format!("{}\n{}", f.report, f.report.hint().unwrap_or_default()))
 }
 
@@ -36,28 +42,59 @@ fn values() {
         ("lambda p: p.y % 0.5", y.rem_euclid(0.5)),
         ("lambda p: sin(90 * p.x)", (90.0 * x).to_radians().sin()),
         ("lambda p: atan2(p.y, p.x)", y.atan2(x).to_degrees()),
-        ("lambda p: length(p.xz - (1, 2))", ((x - 1.0).powi(2) + (z - 2.0).powi(2)).sqrt()),
+        (
+            "lambda p: length(p.xz - (1, 2))",
+            ((x - 1.0).powi(2) + (z - 2.0).powi(2)).sqrt(),
+        ),
         ("lambda p: min(p.x, p.y, 0.1) + max(p.z, 2)", y + 2.0),
         ("lambda p: mix(p.x, p.y, 0.25)", x + (y - x) * 0.25),
         ("lambda p: dot(p, (1, 2, 3))", x + 2.0 * y + 3.0 * z),
-        ("lambda p: abs(p.y) + sqrt(p.z) + square(p.x)", y.abs() + z.sqrt() + x * x),
-        ("lambda p: clamp(p.z, 0, 1) + smoothstep(0, 1, 0.5) + powi(p.x, 3)", 1.5 + x * x * x),
-        ("lambda p: pow(p.z, 1.5) + exp(p.x) + log(p.z) + tanh(p.y)", z.powf(1.5) + x.exp() + z.ln() + y.tanh()),
+        (
+            "lambda p: abs(p.y) + sqrt(p.z) + square(p.x)",
+            y.abs() + z.sqrt() + x * x,
+        ),
+        (
+            "lambda p: clamp(p.z, 0, 1) + smoothstep(0, 1, 0.5) + powi(p.x, 3)",
+            1.5 + x * x * x,
+        ),
+        (
+            "lambda p: pow(p.z, 1.5) + exp(p.x) + log(p.z) + tanh(p.y)",
+            z.powf(1.5) + x.exp() + z.ln() + y.tanh(),
+        ),
     ] {
         let got = at(formula, p);
-        assert!((got - wanted).abs() < 1e-6, "{formula}: {got}, not {wanted}");
+        assert!(
+            (got - wanted).abs() < 1e-6,
+            "{formula}: {got}, not {wanted}"
+        );
     }
 }
 
 #[test]
 fn slopes() {
-    let loaded = load("show(field(lambda p: length(p) - 1 + 0.1 * sin(360 * p.x), size = 3))").unwrap();
-    let Node::Formula(formula) = loaded.scene.objects[0].field.node() else { panic!("a formula") };
-    assert!(formula.is_proven() && formula.slope() > 1.0 && formula.slope() < 1.8, "{}", formula.slope());
+    let loaded =
+        load("show(field(lambda p: length(p) - 1 + 0.1 * sin(360 * p.x), size = 3))").unwrap();
+    let Node::Formula(formula) = loaded.scene.objects[0].field.node() else {
+        panic!("a formula")
+    };
+    assert!(
+        formula.is_proven() && formula.slope() > 1.0 && formula.slope() < 1.8,
+        "{}",
+        formula.slope()
+    );
     assert_eq!(formula.bounds().max, [1.5; 3]);
     let text = to_text(&expand(&loaded.scene));
-    let again = load_text("scene.json", &text, Language::Json, None, &Options::default()).unwrap();
-    let Node::Formula(other) = again.scene.objects[0].field.node() else { panic!("a formula") };
+    let again = load_text(
+        "scene.json",
+        &text,
+        Language::Json,
+        None,
+        &Options::default(),
+    )
+    .unwrap();
+    let Node::Formula(other) = again.scene.objects[0].field.node() else {
+        panic!("a formula")
+    };
     assert_eq!(formula, other);
     assert_eq!(text, to_text(&expand(&again.scene)));
     // a function of the script's own, with everything that a script may do
@@ -77,15 +114,30 @@ fn refusals() {
         ("show(field(lambda p: sqrt(p.x)))", "slope"),
         ("show(field(lambda p: p))", "vector"),
         ("show(field(lambda p: \"x\"))", "a text"),
-        ("show(field(lambda p: 1 if p.x > 0 else 2))", "cannot compare"),
+        (
+            "show(field(lambda p: 1 if p.x > 0 else 2))",
+            "cannot compare",
+        ),
         ("show(field(lambda p: p.w))", "no `w`"),
         ("show(field(lambda p: length(p, radios = 2)))", "radios"),
         ("show(field(lambda: 1))", "at most 0"),
         ("show(field(3))", "not a function"),
-        ("show(field(lambda p: length(p) - 1, size = -1))", "allowed is"),
-        ("show(field(lambda p: length(p) - 1, bounds = (1, 2)))", "bounds"),
-        ("q = []\nfield(lambda p: [q.append(p), p.x][1])\nshow(field(lambda p: p.x + q[0].x))", "formula"),
-        ("def f(p):\n    d = p.x\n    for i in range(100000):\n        d = d + p.y * i\n    return d\nshow(field(f))", "steps"),
+        (
+            "show(field(lambda p: length(p) - 1, size = -1))",
+            "allowed is",
+        ),
+        (
+            "show(field(lambda p: length(p) - 1, bounds = (1, 2)))",
+            "bounds",
+        ),
+        (
+            "q = []\nfield(lambda p: [q.append(p), p.x][1])\nshow(field(lambda p: p.x + q[0].x))",
+            "formula",
+        ),
+        (
+            "def f(p):\n    d = p.x\n    for i in range(100000):\n        d = d + p.y * i\n    return d\nshow(field(f))",
+            "steps",
+        ),
     ] {
         let message = load(text).expect_err(text);
         assert!(message.contains(says), "{text}: {message}");

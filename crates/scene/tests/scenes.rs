@@ -18,7 +18,10 @@ fn scenes(folder: &Path, out: &mut Vec<PathBuf>) {
 #[test]
 fn all_load() {
     let mut all = Vec::new();
-    scenes(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes"), &mut all);
+    scenes(
+        &Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes"),
+        &mut all,
+    );
     all.sort();
     assert!(!all.is_empty());
     let mut failures = Vec::new();
@@ -29,8 +32,16 @@ fn all_load() {
                 assert!(loaded.scene.field().unwrap().is_some());
                 let text = to_text(&expand(&loaded.scene));
                 let folder = path.parent();
-                match load_text("scene.json", &text, Language::Json, folder, &Options::default()) {
-                    Ok(again) => assert_eq!(text, to_text(&expand(&again.scene)), "{}", path.display()),
+                match load_text(
+                    "scene.json",
+                    &text,
+                    Language::Json,
+                    folder,
+                    &Options::default(),
+                ) {
+                    Ok(again) => {
+                        assert_eq!(text, to_text(&expand(&again.scene)), "{}", path.display())
+                    }
                     Err(failed) => failures.push(format!("{}: {}", path.display(), failed.report)),
                 }
             }

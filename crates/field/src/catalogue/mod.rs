@@ -60,6 +60,7 @@ pub enum Kind {
 
 impl Kind {
     /// Numbers it takes in the parameter array; a list takes at least its count.
+    #[allow(clippy::len_without_is_empty, reason = "a parameter is never empty")]
     pub const fn len(self) -> usize {
         match self {
             Kind::Number | Kind::List(_) => 1,

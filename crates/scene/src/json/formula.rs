@@ -70,10 +70,16 @@ pub(super) fn read(body: &Map<String, Value>) -> Read<Formula> {
     let steps = body.get("steps").and_then(Value::as_array);
     let steps = steps.ok_or_else(|| problem("a formula needs `steps`, a list"))?;
     let each = |(i, v)| step(v).map_err(|p| p.within(Member::Index(i)).at("steps"));
-    let steps = steps.iter().enumerate().map(each).collect::<Read<Vec<Step>>>()?;
+    let steps = steps
+        .iter()
+        .enumerate()
+        .map(each)
+        .collect::<Read<Vec<Step>>>()?;
     let steps = Steps::new(steps).map_err(|e| problem(e.to_string()).at("steps"))?;
     let corner = |v: Option<&Value>| {
-        let items = v.and_then(Value::as_array).filter(|items| items.len() == 3)?;
+        let items = v
+            .and_then(Value::as_array)
+            .filter(|items| items.len() == 3)?;
         let mut out = [0.0; 3];
         for (x, item) in out.iter_mut().zip(items) {
             *x = item.as_f64()?;
@@ -82,9 +88,13 @@ pub(super) fn read(body: &Map<String, Value>) -> Read<Formula> {
     };
     let bounds = body.get("bounds").and_then(Value::as_array);
     let corners = bounds.and_then(|b| Some((corner(b.first())?, corner(b.get(1))?)));
-    let (min, max) = corners.ok_or_else(|| problem("a formula needs `bounds`, two corners of three numbers"))?;
+    let (min, max) =
+        corners.ok_or_else(|| problem("a formula needs `bounds`, two corners of three numbers"))?;
     let bounds = Aabb::new(min, max);
-    let formula = match (body.get("proven").and_then(Value::as_bool), body.get("slope").and_then(Value::as_f64)) {
+    let formula = match (
+        body.get("proven").and_then(Value::as_bool),
+        body.get("slope").and_then(Value::as_f64),
+    ) {
         (Some(false), Some(slope)) => Formula::stated(steps, bounds, slope),
         _ => Formula::prove(steps, bounds, &Budget::default()),
     };
@@ -93,20 +103,27 @@ pub(super) fn read(body: &Map<String, Value>) -> Read<Formula> {
 
 fn step(value: &Value) -> Read<Step> {
     let unknown = || -> Box<Problem> {
-        problem("a step is a number, \"x\", \"y\", \"z\", or a function of earlier steps such as [\"sin\", 0] or [\"add\", 0, 1]")
+        problem(
+            "a step is a number, \"x\", \"y\", \"z\", or a function of earlier steps such as [\"sin\", 0] or [\"add\", 0, 1]",
+        )
     };
     if let Some(x) = value.as_f64() {
         return Ok(Step::Constant(x));
     }
     if let Some(name) = value.as_str() {
-        let k = COORDINATES.iter().position(|c| *c == name).ok_or_else(unknown)?;
+        let k = COORDINATES
+            .iter()
+            .position(|c| *c == name)
+            .ok_or_else(unknown)?;
         return Ok(Step::Coordinate(k as u8));
     }
     let items = value.as_array().ok_or_else(unknown)?;
     let operand = |v: &Value| v.as_u64().and_then(|n| u32::try_from(n).ok());
     let name = items.first().and_then(Value::as_str).ok_or_else(unknown)?;
     let step = match items[1..] {
-        [ref a] => (UNARY.iter().find(|f| f.0 == name)).and_then(|f| Some(Step::Unary(f.1, operand(a)?))),
+        [ref a] => {
+            (UNARY.iter().find(|f| f.0 == name)).and_then(|f| Some(Step::Unary(f.1, operand(a)?)))
+        }
         [ref a, ref b] => {
             let found = BINARY.iter().find(|f| f.0 == name);
             found.and_then(|f| Some(Step::Binary(f.1, operand(a)?, operand(b)?)))

@@ -476,7 +476,9 @@ impl Reader {
                 // a proof takes up to a tenth of a second
                 if self.start.elapsed().as_secs_f64() > self.limits.seconds {
                     let seconds = self.limits.seconds;
-                    return Err(problem(format!("loading takes longer than {seconds} seconds (limit `seconds`)")));
+                    return Err(problem(format!(
+                        "loading takes longer than {seconds} seconds (limit `seconds`)"
+                    )));
                 }
                 Ok(Field::formula(Arc::new(super::formula::read(map)?)))
             }

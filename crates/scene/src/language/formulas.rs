@@ -11,13 +11,31 @@ use starlark_syntax::syntax::ast::BinOp;
 use std::sync::Arc;
 use zeroset_field::bounds::Aabb;
 use zeroset_field::field::Field;
-use zeroset_field::formula::{BuildError, Budget, Builder, Expression, Formula, Function, functions};
+use zeroset_field::formula::{
+    Budget, BuildError, Builder, Expression, Formula, Function, functions,
+};
 
 const SLOTS: &[Slot] = &[
-    slot("f", "", "A function of a point p, such as lambda p: length(p) - 1. Its value is negative inside."),
-    slot("size", "4", "Sides of the box around the origin that the field lives in: a number or (x, y, z)."),
-    slot("bounds", "None", "Corners ((x, y, z), (x, y, z)) of the box, in place of a size."),
-    slot("slope", "proven", "How fast the value changes at most, where that cannot be proven."),
+    slot(
+        "f",
+        "",
+        "A function of a point p, such as lambda p: length(p) - 1. Its value is negative inside.",
+    ),
+    slot(
+        "size",
+        "4",
+        "Sides of the box around the origin that the field lives in: a number or (x, y, z).",
+    ),
+    slot(
+        "bounds",
+        "None",
+        "Corners ((x, y, z), (x, y, z)) of the box, in place of a size.",
+    ),
+    slot(
+        "slope",
+        "proven",
+        "How fast the value changes at most, where that cannot be proven.",
+    ),
 ];
 
 /// The functions.
@@ -41,25 +59,39 @@ const PROOF: u64 = 20_000;
 fn field(c: &mut Call<'_, '_>) -> Run<Value> {
     let given = c.need("f")?;
     let bounds = bounds(c)?;
-    let slope = c.get("slope").map(|g| c.ranged("slope", g, 1e-6, 1e6)).transpose()?;
+    let slope = c
+        .get("slope")
+        .map(|g| c.ranged("slope", g, 1e-6, 1e6))
+        .transpose()?;
     let builder = Builder::new();
     let point = c.machine.formula_value(builder.point())?;
-    let argument = Argument { name: None, value: point, place: given.place };
+    let argument = Argument {
+        name: None,
+        value: point,
+        place: given.place,
+    };
     let result = c.machine.call(given.value, vec![argument], c.place)?;
     let value = match c.machine.operand(&builder, result)? {
         Some(value) => value,
         None => {
             let kind = c.machine.store.kind(result);
-            return Err(mistake(format!("the function must give a number made of p, not {kind}")).at(given.place));
+            return Err(mistake(format!(
+                "the function must give a number made of p, not {kind}"
+            ))
+            .at(given.place));
         }
     };
-    let steps = builder.finish(&value).map_err(|e| told(&e).at(given.place))?;
+    let steps = builder
+        .finish(&value)
+        .map_err(|e| told(&e).at(given.place))?;
     c.machine.charge(PROOF)?;
     let formula = match slope {
         Some(slope) => Formula::stated(steps, bounds, slope),
         None => Formula::prove(steps, bounds, &Budget::default()),
     };
-    let formula = formula.map_err(|e| mistake(e.to_string()).help("state how fast it changes at most: field(..., slope = 2)"))?;
+    let formula = formula.map_err(|e| {
+        mistake(e.to_string()).help("state how fast it changes at most: field(..., slope = 2)")
+    })?;
     c.machine.grow(64 * formula.steps().len())?;
     super::fields::value(c.machine, Ok(Field::formula(Arc::new(formula))))
 }
@@ -67,9 +99,17 @@ fn field(c: &mut Call<'_, '_>) -> Run<Value> {
 /// The box of a formula.
 fn bounds(c: &Call<'_, '_>) -> Run<Aabb> {
     if let Some(given) = c.get("bounds") {
-        let corners = c.machine.store.items(given.value).filter(|items| items.len() == 2);
+        let corners = c
+            .machine
+            .store
+            .items(given.value)
+            .filter(|items| items.len() == 2);
         let &[low, high] = corners.unwrap_or_default() else {
-            return Err(c.unfit("bounds", "two corners such as ((-1, -1, -1), (1, 1, 1))", given));
+            return Err(c.unfit(
+                "bounds",
+                "two corners such as ((-1, -1, -1), (1, 1, 1))",
+                given,
+            ));
         };
         let corner = |value| c.numbers::<3>("bounds", Given { value, ..given });
         return Ok(Aabb::new(corner(low)?, corner(high)?));
@@ -110,9 +150,14 @@ impl<'a> Machine<'a> {
     /// The formula that one of the values belongs to, be it inside of a tuple.
     pub(crate) fn formula_of(&self, values: impl IntoIterator<Item = Value>) -> Option<Builder> {
         values.into_iter().find_map(|value| {
-            let inner = self.store.items(value).filter(|items| items.len() <= 4).unwrap_or_default();
+            let inner = self
+                .store
+                .items(value)
+                .filter(|items| items.len() <= 4)
+                .unwrap_or_default();
             let mut all = std::iter::once(&value).chain(inner);
-            all.find_map(|v| self.as_expression(*v)).map(|e| e.builder().clone())
+            all.find_map(|v| self.as_expression(*v))
+                .map(|e| e.builder().clone())
         })
     }
 
@@ -143,9 +188,19 @@ impl<'a> Machine<'a> {
     }
 
     /// An operator of which one side belongs to a formula; `None` where there is none.
-    pub(crate) fn operate_formula(&mut self, op: BinOp, left: Value, right: Value) -> Run<Option<Value>> {
-        let Some(builder) = self.formula_of([left, right]) else { return Ok(None) };
-        let (Some(x), Some(y)) = (self.operand(&builder, left)?, self.operand(&builder, right)?) else {
+    pub(crate) fn operate_formula(
+        &mut self,
+        op: BinOp,
+        left: Value,
+        right: Value,
+    ) -> Run<Option<Value>> {
+        let Some(builder) = self.formula_of([left, right]) else {
+            return Ok(None);
+        };
+        let (Some(x), Some(y)) = (
+            self.operand(&builder, left)?,
+            self.operand(&builder, right)?,
+        ) else {
             return Ok(None);
         };
         let value = match op {
@@ -154,8 +209,14 @@ impl<'a> Machine<'a> {
             BinOp::Multiply => x * y,
             BinOp::Divide => x / y,
             BinOp::Percent => x.modulo(&y),
-            BinOp::Less | BinOp::LessOrEqual | BinOp::Greater | BinOp::GreaterOrEqual | BinOp::Equal | BinOp::NotEqual => {
-                let m = mistake("a formula cannot compare: it is written down once, for all points");
+            BinOp::Less
+            | BinOp::LessOrEqual
+            | BinOp::Greater
+            | BinOp::GreaterOrEqual
+            | BinOp::Equal
+            | BinOp::NotEqual => {
+                let m =
+                    mistake("a formula cannot compare: it is written down once, for all points");
                 return Err(m.help("write min(a, b), max(a, b), clamp(x, lo, hi), step(edge, x) or smoothstep(lo, hi, x)"));
             }
             _ => return Ok(None),
@@ -172,10 +233,13 @@ impl<'a> Machine<'a> {
     /// `p.x`, `p.xz` and the like.
     pub(crate) fn part_of_formula(&mut self, value: Value, name: &str) -> Option<Run<Value>> {
         let expression = self.as_expression(value)?;
-        let part = (name.len() <= 4).then(|| expression.swizzle(name)).flatten();
+        let part = (name.len() <= 4)
+            .then(|| expression.swizzle(name))
+            .flatten();
         Some(match part {
             Some(part) => self.formula_value(part),
-            None => Err(mistake(format!("a point of a formula has no `{name}`")).help("there are p.x, p.y, p.z, p.xy, p.xz and the like")),
+            None => Err(mistake(format!("a point of a formula has no `{name}`"))
+                .help("there are p.x, p.y, p.z, p.xy, p.xz and the like")),
         })
     }
 
@@ -190,14 +254,21 @@ impl<'a> Machine<'a> {
         let builder = self.formula_of(arguments.iter().map(|a| a.value));
         let plain = builder.is_none();
         let builder = builder.unwrap_or_default();
-        let mut sorted: Vec<Option<Expression>> = vec![None; function.params.len().max(arguments.len())];
+        let mut sorted: Vec<Option<Expression>> =
+            vec![None; function.params.len().max(arguments.len())];
         for (i, argument) in arguments.iter().enumerate() {
             let at = match &argument.name {
                 None => i,
-                Some(name) => function.params.iter().position(|p| p == name).ok_or_else(|| {
-                    let help = crate::report::suggestion(name, function.params.iter().copied());
-                    mistake(format!("{}() has no argument `{name}`", function.name)).maybe_help(help).at(argument.place)
-                })?,
+                Some(name) => function
+                    .params
+                    .iter()
+                    .position(|p| p == name)
+                    .ok_or_else(|| {
+                        let help = crate::report::suggestion(name, function.params.iter().copied());
+                        mistake(format!("{}() has no argument `{name}`", function.name))
+                            .maybe_help(help)
+                            .at(argument.place)
+                    })?,
             };
             let value = self.operand(&builder, argument.value)?.ok_or_else(|| {
                 let kind = self.store.kind(argument.value);
@@ -210,7 +281,11 @@ impl<'a> Machine<'a> {
         }
         let mut given: Vec<Expression> = sorted.into_iter().flatten().collect();
         if given.is_empty() {
-            return Err(mistake(format!("{}() needs {}", function.name, function.params.join(", "))));
+            return Err(mistake(format!(
+                "{}() needs {}",
+                function.name,
+                function.params.join(", ")
+            )));
         }
         let degrees = 1_f64.to_radians();
         let angle = Angle::of(function.name);
@@ -233,14 +308,21 @@ impl<'a> Machine<'a> {
                     self.grow_items(numbers.len())?;
                     self.tuple(numbers.iter().map(|x| Value::Float(*x)).collect())
                 }
-                None => Err(mistake(format!("{}() has no value for this", function.name))),
+                None => Err(mistake(format!(
+                    "{}() has no value for this",
+                    function.name
+                ))),
             };
         }
         self.formula_value(value)
     }
 
     /// The function of formulas with this name, if an argument belongs to a formula.
-    pub(crate) fn formula_function(&self, name: &str, arguments: &[Argument<'a>]) -> Option<&'static Function> {
+    pub(crate) fn formula_function(
+        &self,
+        name: &str,
+        arguments: &[Argument<'a>],
+    ) -> Option<&'static Function> {
         self.formula_of(arguments.iter().map(|a| a.value))?;
         functions().iter().find(|f| f.name == name)
     }

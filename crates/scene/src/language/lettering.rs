@@ -18,10 +18,22 @@ pub(crate) const ALL: &[Native] = &[Native {
     params: &[
         slot("text", "", "What they say; may have several lines."),
         slot("size", "1", "Height of a line, scene units."),
-        slot("depth", "0.2", "How thick they are along z; 0 leaves them plane."),
+        slot(
+            "depth",
+            "0.2",
+            "How thick they are along z; 0 leaves them plane.",
+        ),
         slot("align", "\"center\"", "\"left\", \"center\" or \"right\"."),
-        slot("spacing", "0", "Added between letters, as a part of the size, -1 to 10."),
-        slot("font", "DejaVu Sans Bold", "A TrueType or OpenType file in the scene's folder."),
+        slot(
+            "spacing",
+            "0",
+            "Added between letters, as a part of the size, -1 to 10.",
+        ),
+        slot(
+            "font",
+            "DejaVu Sans Bold",
+            "A TrueType or OpenType file in the scene's folder.",
+        ),
     ],
     rest: false,
     run: text,
@@ -31,7 +43,11 @@ fn text(c: &mut Call<'_, '_>) -> Run<Value> {
     let given = c.need("text")?;
     let words = c.text("text", given)?;
     let depth = c.number_or("depth", 0.2, 0.0, 1e6)?;
-    let aligns = [("left", Align::Left), ("center", Align::Centre), ("right", Align::Right)];
+    let aligns = [
+        ("left", Align::Left),
+        ("center", Align::Centre),
+        ("right", Align::Right),
+    ];
     let layout = Layout {
         size: c.number_or("size", 1.0, 1e-6, 1e6)?,
         align: c.word_or("align", Align::Centre, &aligns)?,
@@ -50,8 +66,12 @@ fn text(c: &mut Call<'_, '_>) -> Run<Value> {
         }
     };
     c.machine.charge(64 * words.len() as u64)?;
-    let set = font.and_then(|f| f.set(&words, &layout)).map_err(|e| mistake(e.to_string()).at(given.place))?;
-    let outline = catalogue().primitive("outline").ok_or_else(|| mistake("letters have no outlines here"))?;
+    let set = font
+        .and_then(|f| f.set(&words, &layout))
+        .map_err(|e| mistake(e.to_string()).at(given.place))?;
+    let outline = catalogue()
+        .primitive("outline")
+        .ok_or_else(|| mistake("letters have no outlines here"))?;
     // letters alike are one shape in several places
     let mut shapes: HashMap<usize, Field> = HashMap::new();
     let mut letters = Vec::with_capacity(set.glyphs.len());
@@ -61,14 +81,19 @@ fn text(c: &mut Call<'_, '_>) -> Run<Value> {
             Some(shape) => shape.clone(),
             None => {
                 c.machine.grow_field(glyph.outline.len())?;
-                let shape = Field::primitive(outline, glyph.outline.to_vec()).map_err(|e| fields::unfit(&e))?;
+                let shape = Field::primitive(outline, glyph.outline.to_vec())
+                    .map_err(|e| fields::unfit(&e))?;
                 shapes.insert(key, shape.clone());
                 shape
             }
         };
         c.machine.grow_field(0)?;
         let [x, y] = glyph.position;
-        letters.push(shape.place(Placement::moved([x, y, 0.0])).map_err(|e| fields::unfit(&e))?);
+        letters.push(
+            shape
+                .place(Placement::moved([x, y, 0.0]))
+                .map_err(|e| fields::unfit(&e))?,
+        );
     }
     if letters.is_empty() {
         return Err(mistake("the text has no letters to see").at(given.place));

@@ -38,7 +38,9 @@ fn by_zero() -> Box<Mistake> {
 
 impl<'a> Machine<'a> {
     pub(crate) fn operate(&mut self, op: BinOp, left: Value, right: Value) -> Run<Value> {
-        if matches!(left, Value::Thing(_) | Value::Tuple(_)) || matches!(right, Value::Thing(_) | Value::Tuple(_)) {
+        if matches!(left, Value::Thing(_) | Value::Tuple(_))
+            || matches!(right, Value::Thing(_) | Value::Tuple(_))
+        {
             if let Some(value) = self.operate_formula(op, left, right)? {
                 return Ok(value);
             }
