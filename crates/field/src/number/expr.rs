@@ -386,7 +386,14 @@ impl<'r> Real for Expr<'r> {
         let item = |next: bool| {
             std::array::from_fn(|k| {
                 let component = k as u32;
-                Expr::value(r, r.add(Op::Item { of, next, component }))
+                Expr::value(
+                    r,
+                    r.add(Op::Item {
+                        of,
+                        next,
+                        component,
+                    }),
+                )
             })
         };
         let next = step(states, item(false), item(true));

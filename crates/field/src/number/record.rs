@@ -137,7 +137,9 @@ impl Op {
     /// The values it is made of.
     fn operands(&self) -> Vec<Id> {
         match self {
-            Op::Literal(_) | Op::Input(_) | Op::Param(_) | Op::Item { .. } | Op::State(..) => vec![],
+            Op::Literal(_) | Op::Input(_) | Op::Param(_) | Op::Item { .. } | Op::State(..) => {
+                vec![]
+            }
             Op::Copy(a) | Op::Unary(_, a) | Op::Not(a) => vec![*a],
             Op::Binary(_, a, b) | Op::Compare(_, a, b) | Op::Logic(_, a, b) => vec![*a, *b],
             Op::Length(v) => v.clone(),
@@ -219,7 +221,9 @@ pub enum Argument {
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum RecordError {
     /// A name that is none.
-    #[error("`{0}` is no name for a function or an argument: letters, digits and underscores, not a digit first, no two underscores first")]
+    #[error(
+        "`{0}` is no name for a function or an argument: letters, digits and underscores, not a digit first, no two underscores first"
+    )]
     Name(String),
     /// Two arguments of one name, or two offsets.
     #[error("function `{function}` has two arguments `{argument}`")]
@@ -469,7 +473,9 @@ impl Recorder {
         } else {
             next
         };
-        self.0.borrow_mut().loops[of.0 as usize].states[index as usize].1.next = next;
+        self.0.borrow_mut().loops[of.0 as usize].states[index as usize]
+            .1
+            .next = next;
     }
 
     /// Ends the innermost loop, `of`, unless the condition holds.
@@ -560,7 +566,9 @@ impl Record {
 /// Letters, digits and underscores, as the shading languages have in common.
 fn is_name(name: &str) -> bool {
     let mut chars = name.chars();
-    chars.next().is_some_and(|c| c.is_ascii_alphabetic() || c == '_')
+    chars
+        .next()
+        .is_some_and(|c| c.is_ascii_alphabetic() || c == '_')
         && chars.all(|c| c.is_ascii_alphanumeric() || c == '_')
         && name != "_"
         && !name.starts_with("__")

@@ -29,7 +29,11 @@ pub fn print(function: &Function) -> String {
             printer.offset = format!("{} + ", identifier(name));
         }
     }
-    let results: Vec<String> = function.results().iter().map(|id| printer.name(*id)).collect();
+    let results: Vec<String> = function
+        .results()
+        .iter()
+        .map(|id| printer.name(*id))
+        .collect();
     let (kind, result) = match results.as_slice() {
         [one] => ("f32".to_owned(), one.clone()),
         many => {
@@ -123,7 +127,11 @@ impl Printer<'_> {
             Op::Input(input) => input.clone(),
             Op::State(of, index) => state_name(of.number(), *index),
             Op::Param(at) => self.param(*at),
-            Op::Item { of, next, component } => {
+            Op::Item {
+                of,
+                next,
+                component,
+            } => {
                 let which = if *next { 'b' } else { 'a' };
                 format!("{PARAMS}[{which}{} + {component}u]", of.number())
             }
@@ -189,11 +197,15 @@ impl Printer<'_> {
             }
         };
         self.line(&format!("let n{id} = {count};"));
-        self.line(&format!("for (var i{id} = {first}u; i{id} < n{id}; i{id}++) {{"));
+        self.line(&format!(
+            "for (var i{id} = {first}u; i{id} < n{id}; i{id}++) {{"
+        ));
         self.depth += 1;
         if let Turns::Items { at, width, .. } = &l.turns {
             let items = format!("{}{}u", self.offset, at + 1);
-            self.line(&format!("let a{id} = {items} + (i{id} + n{id} - 1u) % n{id} * {width}u;"));
+            self.line(&format!(
+                "let a{id} = {items} + (i{id} + n{id} - 1u) % n{id} * {width}u;"
+            ));
             self.line(&format!("let b{id} = {items} + i{id} * {width}u;"));
         }
         self.block(&l.body);

@@ -10,3 +10,4 @@ mod shader;
 mod slope;
 mod support;
 mod tree;
+mod vector_code;

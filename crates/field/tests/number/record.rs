@@ -6,7 +6,9 @@ use crate::support::Formula;
 use crate::tree::{Tree, Unary, number, tree};
 use proptest::prelude::*;
 use zeroset_field::number::wgsl;
-use zeroset_field::number::{Args, Argument, Dual, Ends, Expr, Ops, Real, RecordError, Recorder, Vec3, v3};
+use zeroset_field::number::{
+    Args, Argument, Dual, Ends, Expr, Ops, Real, RecordError, Recorder, Vec3, v3,
+};
 
 const SIGNATURE: [(&str, Argument); 2] = [("p", Argument::Vec3), ("at", Argument::Offset)];
 
@@ -43,17 +45,32 @@ fn hold<F: Formula>() {
     params.extend(PARAMS);
     for p in points() {
         let q = v3(p[0], p[1], p[2]);
-        let a = Args { store: &params[..], at };
+        let a = Args {
+            store: &params[..],
+            at,
+        };
         let v = F::eval(q, a);
-        let d = F::eval(Dual::point(q), Args { store: &params[..], at });
+        let d = F::eval(
+            Dual::point(q),
+            Args {
+                store: &params[..],
+                at,
+            },
+        );
         let expected = [d.d[0], d.d[1], d.d[2], d.v];
         let size = expected.iter().fold(1.0_f32, |m, x| m.max(x.abs()));
         let got = shader.call("f", p, at as u32, &params);
-        assert!((got[0] - v).abs() <= 1e-5 * size, "{got:?} at {p:?}, should be {v}\n{source}");
+        assert!(
+            (got[0] - v).abs() <= 1e-5 * size,
+            "{got:?} at {p:?}, should be {v}\n{source}"
+        );
         let got = shader.call("g", p, at as u32, &params);
         for k in 0..4 {
             let error = (got[k] - expected[k]).abs();
-            assert!(error <= 1e-4 * size, "{got:?} at {p:?}, should be {expected:?}\n{source}");
+            assert!(
+                error <= 1e-4 * size,
+                "{got:?} at {p:?}, should be {expected:?}\n{source}"
+            );
         }
     }
 }
@@ -157,7 +174,11 @@ fn loops_nest_and_their_states_go_on_together() {
     for turns in [0.0, 1.0, 2.0, 5.0, 5.9, -1.0] {
         let params = [turns, 3.0, 0.5, 1.0, -2.0, 0.25, 4.0, 0.125];
         let expected = nested(v3(1.0, -2.0, 0.0), Args::new(&params[..]));
-        assert_eq!(shader.call("f", [1.0, -2.0, 0.0], 0, &params), expected, "{turns} turns\n{source}");
+        assert_eq!(
+            shader.call("f", [1.0, -2.0, 0.0], 0, &params),
+            expected,
+            "{turns} turns\n{source}"
+        );
     }
 }
 
@@ -192,7 +213,12 @@ fn loops_of_constants() {
     let p = recorder.point("p");
     // nothing but constants: computed at once
     let turns = |limit: f64| {
-        Expr::repeat_while(Expr::constant(limit), Expr::constant(1.0), |s| s.below(50.0), |s| s * 2.0)
+        Expr::repeat_while(
+            Expr::constant(limit),
+            Expr::constant(1.0),
+            |s| s.below(50.0),
+            |s| s * 2.0,
+        )
     };
     let source = print("f", &recorder, &[turns(3.0), turns(100.0)]);
     assert!(source.contains("return vec2f(8.0f, 64.0f);"), "{source}");
@@ -204,11 +230,19 @@ fn loops_of_constants() {
         |(s, n)| (s + p.x * n, n + 1.0),
     );
     // a condition that is known, a loop that never turns
-    let never = Expr::repeat_while(Expr::constant(4.0), p.y, |s| s.lit(1.0).below(0.0), |s| s + p.x);
+    let never = Expr::repeat_while(
+        Expr::constant(4.0),
+        p.y,
+        |s| s.lit(1.0).below(0.0),
+        |s| s + p.x,
+    );
     let none = Expr::repeat_while(Expr::constant(0.0), p.z, |s| s.below(1.0), |s| s + p.x);
     let source = print("f", &recorder, &[sum.0, sum.1, never, none]);
     assert_eq!(loops(&source), 1, "{source}");
-    assert_eq!(Shader::new(&source).call("f", [0.5, 7.0, 9.0], 0, &[]), [5.0, 5.0, 7.0, 9.0]);
+    assert_eq!(
+        Shader::new(&source).call("f", [0.5, 7.0, 9.0], 0, &[]),
+        [5.0, 5.0, 7.0, 9.0]
+    );
 }
 
 #[test]
@@ -218,7 +252,15 @@ fn only_what_is_needed_is_printed() {
     let unused = Expr::repeat_while(recorder.param(3), p.x, |s| s.below(9.0), |s| s + p.y.sin());
     let twice = (p.y.exp() + p.z) * (p.y.exp() + p.z);
     let source = print("f", &recorder, &[twice]);
-    assert_eq!((loops(&source), source.matches("exp(").count(), source.matches("sin(").count()), (0, 1, 0), "{source}");
+    assert_eq!(
+        (
+            loops(&source),
+            source.matches("exp(").count(),
+            source.matches("sin(").count()
+        ),
+        (0, 1, 0),
+        "{source}"
+    );
     // the same record gives other functions too
     assert_eq!(loops(&print("g", &recorder, &[unused])), 1);
     // derivatives of constants and products with 0 and 1 leave no trace
@@ -231,27 +273,56 @@ fn only_what_is_needed_is_printed() {
 fn literals_are_ones_that_wgsl_has() {
     let recorder = Recorder::new();
     let x = recorder.input("p.x");
-    let numbers = [1.0, -1.0, 0.0, -0.0, 3e38, -3e38, 1e30, 1e-45, 16_777_216.0, 0.1, f32::MIN_POSITIVE];
+    let numbers = [
+        1.0,
+        -1.0,
+        0.0,
+        -0.0,
+        3e38,
+        -3e38,
+        1e30,
+        1e-45,
+        16_777_216.0,
+        0.1,
+        f32::MIN_POSITIVE,
+    ];
     for c in numbers {
         let shader = Shader::new(&print("f", &recorder, &[x.min(c), x.lit(c)]));
         let got = shader.call("f", [f32::MAX, 0.0, 0.0], 0, &[]);
         assert_eq!(got, [c, c]);
     }
-    let infinite = [x.lit(f32::INFINITY), x.lit(1.0) / 0.0, x.lit(-1e38) * 1e38, (x.lit(0.0)).ln()];
+    let infinite = [
+        x.lit(f32::INFINITY),
+        x.lit(1.0) / 0.0,
+        x.lit(-1e38) * 1e38,
+        (x.lit(0.0)).ln(),
+    ];
     let source = print("f", &recorder, &infinite);
     let most = f32::MAX;
-    assert_eq!(Shader::new(&source).call("f", [0.0; 3], 0, &[]), [most, most, -most, -most]);
+    assert_eq!(
+        Shader::new(&source).call("f", [0.0; 3], 0, &[]),
+        [most, most, -most, -most]
+    );
     let none = recorder.function("f", &SIGNATURE, &[x + x.lit(0.0) / 0.0]);
     assert_eq!(none.err(), Some(RecordError::NotANumber("f".into())));
 }
 
 #[test]
 fn reserved_names_are_kept_apart() {
-    let words = naga::keywords::wgsl::RESERVED.iter().chain(naga::keywords::wgsl::BUILTIN_IDENTIFIERS);
-    let more = ["params", "v1", "s2_0", "i3", "n4", "a5", "b6", "box", "p_", "union", "f32", "main", "vec3f"];
+    let words = naga::keywords::wgsl::RESERVED
+        .iter()
+        .chain(naga::keywords::wgsl::BUILTIN_IDENTIFIERS);
+    let more = [
+        "params", "v1", "s2_0", "i3", "n4", "a5", "b6", "box", "p_", "union", "f32", "main",
+        "vec3f",
+    ];
     for word in words.copied().chain(more) {
         let (a, b, c) = (word.to_owned(), format!("{word}_"), format!("{word}__"));
-        let names = [wgsl::identifier(&a), wgsl::identifier(&b), wgsl::identifier(&c)];
+        let names = [
+            wgsl::identifier(&a),
+            wgsl::identifier(&b),
+            wgsl::identifier(&c),
+        ];
         assert!(names[0] != names[1] && names[1] != names[2], "{names:?}");
         // names that begin with two underscores are refused
         if word.starts_with('_') {
@@ -275,10 +346,16 @@ fn mistakes_are_named() {
     let recorder = Recorder::new();
     let p = recorder.point("p");
     let error = |name: &str, signature: &[(&str, Argument)], results: &[Expr<'_>]| {
-        recorder.function(name, signature, results).err().map(|e| e.to_string())
+        recorder
+            .function(name, signature, results)
+            .err()
+            .map(|e| e.to_string())
     };
     for name in ["", "3d", "a b", "_", "__f", "größe", "a.b"] {
-        assert!(error(name, &SIGNATURE, &[p.x]).is_some_and(|e| e.contains("is no name")), "{name}");
+        assert!(
+            error(name, &SIGNATURE, &[p.x]).is_some_and(|e| e.contains("is no name")),
+            "{name}"
+        );
     }
     let twice = [("p", Argument::Vec3), ("p", Argument::Number)];
     assert!(error("f", &twice, &[p.x]).is_some_and(|e| e.contains("two arguments `p`")));
@@ -297,11 +374,15 @@ fn functions_take_what_their_arguments_say() {
     let recorder = Recorder::new();
     let (d, q) = (recorder.input("d"), recorder.input("q.y"));
     let signature = [("d", Argument::Number), ("q", Argument::Vec2)];
-    let Ok(function) = recorder.function("f", &signature, &[d + q, recorder.param(7), d - q]) else {
+    let Ok(function) = recorder.function("f", &signature, &[d + q, recorder.param(7), d - q])
+    else {
         panic!("no function");
     };
     let source = wgsl::print(&function);
-    assert!(source.starts_with("fn f(d: f32, q: vec2f) -> vec3f {"), "{source}");
+    assert!(
+        source.starts_with("fn f(d: f32, q: vec2f) -> vec3f {"),
+        "{source}"
+    );
     // without an offset parameters are counted from the array's beginning
     assert!(source.contains("params[7u]"), "{source}");
     Shader::new(&source);

@@ -3,8 +3,8 @@
 //! Only what printed functions are made of; anything else is a panic that names it.
 
 use naga::{
-    BinaryOperator, Block, Expression, Function, Handle, Literal, LocalVariable, MathFunction, Module, ScalarKind,
-    Statement, UnaryOperator,
+    BinaryOperator, Block, Expression, Function, Handle, Literal, LocalVariable, MathFunction,
+    Module, ScalarKind, Statement, UnaryOperator,
 };
 
 /// A checked shader.
@@ -30,13 +30,15 @@ enum Flow {
 impl Shader {
     /// Parses and validates functions that read `params`.
     pub(crate) fn new(functions: &str) -> Self {
-        let source = format!("@group(0) @binding(0) var<storage, read> params: array<f32>;\n{functions}");
+        let source =
+            format!("@group(0) @binding(0) var<storage, read> params: array<f32>;\n{functions}");
         let module = match naga::front::wgsl::parse_str(&source) {
             Ok(module) => module,
             Err(e) => panic!("{}\n{source}", e.emit_to_string(&source)),
         };
         let flags = naga::valid::ValidationFlags::all();
-        let checked = naga::valid::Validator::new(flags, naga::valid::Capabilities::empty()).validate(&module);
+        let checked = naga::valid::Validator::new(flags, naga::valid::Capabilities::empty())
+            .validate(&module);
         if let Err(e) = checked {
             panic!("{}\n{source}", e.emit_to_string(&source));
         }
@@ -87,11 +89,19 @@ impl Frame<'_> {
                     Flow::On
                 }
                 Statement::Block(block) => self.run(block),
-                Statement::If { condition, accept, reject } => {
+                Statement::If {
+                    condition,
+                    accept,
+                    reject,
+                } => {
                     let holds = self.truth(*condition);
                     self.run(if holds { accept } else { reject })
                 }
-                Statement::Loop { body, continuing, break_if: None } => self.repeat(body, continuing),
+                Statement::Loop {
+                    body,
+                    continuing,
+                    break_if: None,
+                } => self.repeat(body, continuing),
                 Statement::Break => Flow::Break,
                 Statement::Store { pointer, value } => {
                     let value = self.value(*value);
@@ -101,11 +111,13 @@ impl Frame<'_> {
                     }
                     Flow::On
                 }
-                Statement::Return { value: Some(value) } => Flow::Return(match self.value(*value) {
-                    Value::Float(x) => vec![x],
-                    Value::Vector(v) => v,
-                    other => panic!("returns {other:?}"),
-                }),
+                Statement::Return { value: Some(value) } => {
+                    Flow::Return(match self.value(*value) {
+                        Value::Float(x) => vec![x],
+                        Value::Vector(v) => v,
+                        other => panic!("returns {other:?}"),
+                    })
+                }
                 other => panic!("{other:?}"),
             };
             if !matches!(flow, Flow::On) {
@@ -178,17 +190,37 @@ impl Frame<'_> {
                 (UnaryOperator::LogicalNot, Value::Bool(b)) => Value::Bool(!b),
                 other => panic!("{other:?}"),
             },
-            Expression::Binary { op, left, right } => binary(*op, self.value(*left), self.value(*right)),
-            Expression::Select { condition, accept, reject } => {
+            Expression::Binary { op, left, right } => {
+                binary(*op, self.value(*left), self.value(*right))
+            }
+            Expression::Select {
+                condition,
+                accept,
+                reject,
+            } => {
                 let holds = self.truth(*condition);
                 self.value(if holds { *accept } else { *reject })
             }
-            Expression::Math { fun, arg, arg1, arg2, .. } => {
+            Expression::Math {
+                fun,
+                arg,
+                arg1,
+                arg2,
+                ..
+            } => {
                 let first = self.value(*arg);
-                let rest: Vec<f32> = [arg1, arg2].into_iter().flatten().map(|a| self.float(*a)).collect();
+                let rest: Vec<f32> = [arg1, arg2]
+                    .into_iter()
+                    .flatten()
+                    .map(|a| self.float(*a))
+                    .collect();
                 Value::Float(math(*fun, first, &rest))
             }
-            Expression::As { expr, kind: ScalarKind::Uint, convert: Some(4) } => Value::Count(self.float(*expr) as u32),
+            Expression::As {
+                expr,
+                kind: ScalarKind::Uint,
+                convert: Some(4),
+            } => Value::Count(self.float(*expr) as u32),
             other => panic!("{other:?}"),
         }
     }

@@ -58,7 +58,11 @@ pub(crate) fn lanes<F: Formula>(level: Level, params: &[f32], points: &[[f32; 3]
 }
 
 /// Value and gradient of the formula at every point, by lanes.
-pub(crate) fn dual_lanes<F: Formula>(level: Level, params: &[f32], points: &[[f32; 3]]) -> Vec<[f32; 4]> {
+pub(crate) fn dual_lanes<F: Formula>(
+    level: Level,
+    params: &[f32],
+    points: &[[f32; 3]],
+) -> Vec<[f32; 4]> {
     duals::<F>(level, params, points, true)
 }
 

@@ -117,7 +117,12 @@ fn shader<F: Formula>() -> String {
     };
     let p = Dual::point(recorder.point("p"));
     let [first, ..] = F::eval([d, p.x, p.y, p.z], Args::new(&&recorder));
-    value + &print("gradient", &recorder, &[first.d[0], first.d[1], first.d[2], first.v])
+    value
+        + &print(
+            "gradient",
+            &recorder,
+            &[first.d[0], first.d[1], first.d[2], first.v],
+        )
 }
 
 fn print(name: &str, recorder: &Recorder, results: &[Expr<'_>]) -> String {

@@ -3,9 +3,7 @@
 use fearless_simd::{Level, Simd, prelude::*};
 use zeroset_field::bounds::{Aabb, Exactness};
 use zeroset_field::catalogue::{Info, Primitive, Roughness};
-use zeroset_field::number::{
-    Args, Argument, Dual, Expr, F64, Interval, Lanes, Recorder, v3, wgsl,
-};
+use zeroset_field::number::{Args, Argument, Dual, Expr, F64, Interval, Lanes, Recorder, v3, wgsl};
 
 pub type Point = [f64; 3];
 
