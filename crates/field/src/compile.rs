@@ -382,7 +382,11 @@ fn grid(r: &Repetition) -> Vec<f64> {
         } else if r.count[k] == 0 {
             [1.0, r.spacing[k], 0.0, -endless, endless]
         } else {
-            let shift = if r.count[k].is_multiple_of(2) { 0.5 } else { 0.0 };
+            let shift = if r.count[k].is_multiple_of(2) {
+                0.5
+            } else {
+                0.0
+            };
             let first = -(count(k) / 2.0).floor();
             [1.0, r.spacing[k], shift, first, first + count(k) - 1.0]
         }

@@ -74,8 +74,8 @@ fn batch(program: &Program, level: Level, points: &[[f64; 3]]) -> (Vec<f32>, Vec
     let mut w = Workspace::new(program);
     assert!(points.len() <= BATCH);
     for (i, p) in points.iter().enumerate() {
-        for k in 0..3 {
-            w.points_mut()[k].0[i] = p[k] as f32;
+        for (lane, x) in w.points_mut().iter_mut().zip(p) {
+            lane.0[i] = *x as f32;
         }
     }
     let n = points.len();
@@ -367,8 +367,8 @@ fn marks_follow_the_winning_side_and_blend_in_smooth_joins() {
         [0.0, -3.0, 0.0],
     ];
     for (i, p) in points.iter().enumerate() {
-        for k in 0..3 {
-            w.points_mut()[k].0[i] = p[k];
+        for (lane, x) in w.points_mut().iter_mut().zip(p) {
+            lane.0[i] = *x;
         }
     }
     for level in levels() {

@@ -126,6 +126,7 @@ pub struct Picture<'a> {
     /// The method of every object.
     pub(crate) method_of: Vec<usize>,
     /// Memory of threads that are done with their tile.
+    #[allow(clippy::vec_box, reason = "megabytes, which should not move")]
     spare: Mutex<Vec<Box<Scratch>>>,
 }
 

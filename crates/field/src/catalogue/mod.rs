@@ -1,7 +1,7 @@
 //! The catalogue: every primitive, map, modifier and join, each written once over [`Real`].
 //!
 //! An entry is a unit struct with one trait implementation (its formula, its parameters, its bounds, and a plain `f64`
-//! membership test that the proofs hold it against) and one line in [`list`]. The scene language, the reference listing,
+//! membership test that the proofs hold it against) and one line in [`mod@list`]. The scene language, the reference listing,
 //! the evaluators, the shaders and the tests all iterate that list.
 //!
 //! 2D shapes are fields that ignore `z`: they become solids by `extrude` and `revolve`.
@@ -90,23 +90,82 @@ pub struct Param {
 }
 
 /// A parameter of one number.
-pub const fn number(name: &'static str, unit: Unit, default: &'static [f64; 1], min: f64, max: f64, doc: &'static str) -> Param {
-    Param { name, kind: Kind::Number, unit, default, min, max, doc }
+pub const fn number(
+    name: &'static str,
+    unit: Unit,
+    default: &'static [f64; 1],
+    min: f64,
+    max: f64,
+    doc: &'static str,
+) -> Param {
+    Param {
+        name,
+        kind: Kind::Number,
+        unit,
+        default,
+        min,
+        max,
+        doc,
+    }
 }
 
 /// A parameter of two numbers.
-pub const fn vec2(name: &'static str, unit: Unit, default: &'static [f64; 2], min: f64, max: f64, doc: &'static str) -> Param {
-    Param { name, kind: Kind::Vec2, unit, default, min, max, doc }
+pub const fn vec2(
+    name: &'static str,
+    unit: Unit,
+    default: &'static [f64; 2],
+    min: f64,
+    max: f64,
+    doc: &'static str,
+) -> Param {
+    Param {
+        name,
+        kind: Kind::Vec2,
+        unit,
+        default,
+        min,
+        max,
+        doc,
+    }
 }
 
 /// A parameter of three numbers.
-pub const fn vec3(name: &'static str, unit: Unit, default: &'static [f64; 3], min: f64, max: f64, doc: &'static str) -> Param {
-    Param { name, kind: Kind::Vec3, unit, default, min, max, doc }
+pub const fn vec3(
+    name: &'static str,
+    unit: Unit,
+    default: &'static [f64; 3],
+    min: f64,
+    max: f64,
+    doc: &'static str,
+) -> Param {
+    Param {
+        name,
+        kind: Kind::Vec3,
+        unit,
+        default,
+        min,
+        max,
+        doc,
+    }
 }
 
 /// A list of items of `width` numbers.
-pub const fn list(name: &'static str, unit: Unit, width: usize, default: &'static [f64], doc: &'static str) -> Param {
-    Param { name, kind: Kind::List(width), unit, default, min: -LARGE, max: LARGE, doc }
+pub const fn list(
+    name: &'static str,
+    unit: Unit,
+    width: usize,
+    default: &'static [f64],
+    doc: &'static str,
+) -> Param {
+    Param {
+        name,
+        kind: Kind::List(width),
+        unit,
+        default,
+        min: -LARGE,
+        max: LARGE,
+        doc,
+    }
 }
 
 /// The largest length a scene may state, in scene units.
@@ -283,7 +342,12 @@ pub trait Join: 'static {
     fn lipschitz(a: &[f64], x: f64, y: f64) -> f64;
     /// A box that holds all places where the result is at most `level`, from boxes of the operands' level sets: `x(l)`
     /// holds all places where `x` is at most `l`.
-    fn level_bounds(a: &[f64], level: f64, x: &dyn Fn(f64) -> Aabb, y: &dyn Fn(f64) -> Aabb) -> Aabb;
+    fn level_bounds(
+        a: &[f64],
+        level: f64,
+        x: &dyn Fn(f64) -> Aabb,
+        y: &dyn Fn(f64) -> Aabb,
+    ) -> Aabb;
     /// A box that holds the result, from the boxes of fields whose values are at least the distance to their box along
     /// some axis.
     fn bounds(a: &[f64], x: &Aabb, y: &Aabb) -> Aabb {
@@ -291,7 +355,10 @@ pub trait Join: 'static {
     }
     /// A box that holds the result of joining many fields from left to right, from their boxes.
     fn fold_bounds(a: &[f64], shapes: &[Aabb]) -> Aabb {
-        let joined = shapes.iter().copied().reduce(|x, y| Self::bounds(a, &x, &y));
+        let joined = shapes
+            .iter()
+            .copied()
+            .reduce(|x, y| Self::bounds(a, &x, &y));
         joined.unwrap_or(Aabb::EMPTY)
     }
     /// How true the result is.

@@ -1,6 +1,6 @@
 //! Noise over space with proven ranges and slopes: for displacement and for procedural materials.
 //!
-//! All noises live on the lattice of whole numbers, draw from its [`Hash`] (the same bits in every number type) and so repeat
+//! All noises live on the lattice of whole numbers, draw from its [`struct@Hash`] (the same bits in every number type) and so repeat
 //! after 289 cells along every axis.
 //!
 //! # Ranges and slopes

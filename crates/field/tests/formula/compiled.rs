@@ -49,7 +49,8 @@ fn carved(p: &Expression) -> Expression {
 
 /// Formulas with the half side of their box; some end inside it, some are cut.
 fn examples() -> Vec<(&'static str, Formula)> {
-    let list: [(&str, f64, fn(&Expression) -> Expression); 8] = [
+    type Example = (&'static str, f64, fn(&Expression) -> Expression);
+    let list: [Example; 8] = [
         ("sphere", 1.2, |p| p.length() - 1.0),
         ("touching sphere", 1.0, |p| p.length() - 1.0),
         ("cut sphere", 0.8, |p| p.length() - 1.0),

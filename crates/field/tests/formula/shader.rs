@@ -1,12 +1,11 @@
 //! Every operation that only the compiler emits is WGSL that naga accepts, with its gradient.
 
 use zeroset_field::formula::{Binary, Unary};
-use zeroset_field::number::{Args, Dual, Expr, Real, Recorder, Vec3, v3};
+use zeroset_field::number::{Args, Argument, Dual, Expr, Real, Recorder, Vec3, v3, wgsl};
 use zeroset_field::op::{Change, Leaf, Warp, arithmetic, domain};
 
 fn validate(name: &str, source: &str) {
-    let head = "@group(0) @binding(0) var<storage, read> params: array<f32>;\n\
-                var<private> d: f32;\nvar<private> e: f32;\n";
+    let head = "@group(0) @binding(0) var<storage, read> params: array<f32>;\n";
     let source = format!("{head}{source}");
     let module = naga::front::wgsl::parse_str(&source)
         .unwrap_or_else(|error| panic!("{name}: {}\n{source}", error.emit_to_string(&source)));
@@ -30,6 +29,17 @@ fn point(r: &Recorder) -> Vec3<Expr<'_>> {
     v3(r.input("p.x"), r.input("p.y"), r.input("p.z"))
 }
 
+fn print(name: &str, recorder: &Recorder, results: &[Expr<'_>]) -> String {
+    let arguments = [
+        ("p", Argument::Vec3),
+        ("d", Argument::Number),
+        ("e", Argument::Number),
+        ("at", Argument::Offset),
+    ];
+    let function = recorder.function(name, &arguments, results);
+    wgsl::print(&function.unwrap_or_else(|e| panic!("{e}")))
+}
+
 fn prove(name: &str, f: &impl Recorded) {
     let recorder = Recorder::new();
     let values = f.record(
@@ -42,7 +52,7 @@ fn prove(name: &str, f: &impl Recorded) {
         1 => values,
         _ => [values.clone(), vec![values[0]]].concat(),
     };
-    let value = recorder.function("value", &spread);
+    let value = print("value", &recorder, &spread);
     let recorder = Recorder::new();
     let p = Dual::point(point(&recorder));
     let zero = recorder.input("p.x") * 0.0;
@@ -51,8 +61,9 @@ fn prove(name: &str, f: &impl Recorded) {
         d: [recorder.input("p.y"), zero, recorder.input("p.z")],
     };
     let values = f.record(p, number("d"), number("e"), Args::new(&&recorder));
-    let gradient = recorder.function(
+    let gradient = print(
         "gradient",
+        &recorder,
         &[values[0].d[0], values[0].d[1], values[0].d[2], values[0].v],
     );
     validate(name, &(value + &gradient));

@@ -67,7 +67,10 @@ fn lanes_are_faster_than_points() {
         ("blend", ratio::<Blend>()),
         ("waves", ratio::<Waves>()),
     ] {
-        assert!(ratio > 1.5, "{name}: lanes are only {ratio:.2} times as fast: is something not inlined?");
+        assert!(
+            ratio > 1.5,
+            "{name}: lanes are only {ratio:.2} times as fast: is something not inlined?"
+        );
     }
 }
 
@@ -88,15 +91,22 @@ const SOURCES: [(&str, &str); 9] = [
 fn not_inlined(source: &str) -> Vec<String> {
     let lines: Vec<&str> = source.lines().map(str::trim).collect();
     let is_function = |line: &str| {
-        let line = line.trim_start_matches("pub ").trim_start_matches("pub(super) ");
+        let line = line
+            .trim_start_matches("pub ")
+            .trim_start_matches("pub(super) ");
         line.starts_with("fn ") || line.starts_with("const fn ")
     };
     let has_body = |i: usize| {
-        let end = lines[i..].iter().find(|l| l.ends_with('{') || l.ends_with(';') || l.ends_with('}'));
+        let end = lines[i..]
+            .iter()
+            .find(|l| l.ends_with('{') || l.ends_with(';') || l.ends_with('}'));
         end.is_some_and(|l| !l.ends_with(';'))
     };
     let is_marked = |i: usize| {
-        let above = lines[..i].iter().rev().take_while(|l| l.starts_with("#[") || l.starts_with("//"));
+        let above = lines[..i]
+            .iter()
+            .rev()
+            .take_while(|l| l.starts_with("#[") || l.starts_with("//"));
         let mut marks = above.filter(|l| l.starts_with("#[inline("));
         marks.any(|l| *l == "#[inline(always)]" || *l == "#[inline(never)]")
     };
@@ -112,5 +122,8 @@ fn functions_over_lanes_are_inlined() {
         assert_eq!(not_inlined(source), Vec::<String>::new(), "in {name}.rs");
     }
     let sample = "#[inline(always)]\nfn a() {\n}\nfn b(x: [f32; 2]) -> f32\nwhere\n{\n}\nfn c();\npub fn d() {}\n";
-    assert_eq!(not_inlined(sample), ["fn b(x: [f32; 2]) -> f32", "pub fn d() {}"]);
+    assert_eq!(
+        not_inlined(sample),
+        ["fn b(x: [f32; 2]) -> f32", "pub fn d() {}"]
+    );
 }

@@ -2,6 +2,16 @@
 //!
 //! `cargo test --test primitives torus` proves one entry (any part of the struct's name, with its capitals).
 
+#![allow(
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "a number that is none must fail a proof"
+)]
+#![allow(
+    clippy::type_complexity,
+    reason = "tables of functions are what entries are made of"
+)]
+#![allow(unreachable_pub, reason = "the modules of a test are its own")]
+
 use zeroset_field::bounds::Exactness;
 use zeroset_field::{catalogue, each_primitive};
 

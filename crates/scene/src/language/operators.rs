@@ -38,12 +38,11 @@ fn by_zero() -> Box<Mistake> {
 
 impl<'a> Machine<'a> {
     pub(crate) fn operate(&mut self, op: BinOp, left: Value, right: Value) -> Run<Value> {
-        if matches!(left, Value::Thing(_) | Value::Tuple(_))
-            || matches!(right, Value::Thing(_) | Value::Tuple(_))
+        let may_be_formula = |value| matches!(value, Value::Thing(_) | Value::Tuple(_));
+        if (may_be_formula(left) || may_be_formula(right))
+            && let Some(value) = self.operate_formula(op, left, right)?
         {
-            if let Some(value) = self.operate_formula(op, left, right)? {
-                return Ok(value);
-            }
+            return Ok(value);
         }
         match op {
             BinOp::Equal => return Ok(Value::Bool(self.equal(left, right, 0)?)),

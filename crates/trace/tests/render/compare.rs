@@ -10,6 +10,7 @@ pub struct Difference {
     /// Share of the pixels that differ by more than the tolerance.
     pub share: f64,
     /// Mean absolute difference.
+    #[allow(dead_code, reason = "printed where a comparison fails")]
     pub mean: f64,
 }
 

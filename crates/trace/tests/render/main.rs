@@ -1,5 +1,7 @@
 //! The stream renderer against the plain one, against itself, and against a dense march in double precision.
 
+#![allow(unreachable_pub, reason = "the modules of a test are its own")]
+
 mod compare;
 mod marchers;
 mod methods;
