@@ -21,6 +21,15 @@ pub enum Depth {
 /// # Errors
 /// What the writer gives; a picture without pixels or with a side of more than 2^31 - 1, which PNG cannot hold.
 pub fn write(writer: impl Write, picture: &Picture, depth: Depth, notes: &Notes) -> io::Result<()> {
+    let mut writer = Faithful {
+        writer,
+        failed: None,
+    };
+    let encoded = encode(&mut writer, picture, depth, notes);
+    writer.failed.map_or(encoded, Err)
+}
+
+fn encode(writer: impl Write, picture: &Picture, depth: Depth, notes: &Notes) -> io::Result<()> {
     let mut encoder = Encoder::new(writer, picture.width(), picture.height());
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(match depth {
@@ -59,22 +68,46 @@ pub fn write(writer: impl Write, picture: &Picture, depth: Depth, notes: &Notes)
                 }
             }
         }
-        stream.write_all(&line).map_err(unwrapped)?;
+        stream.write_all(&line)?;
     }
     stream.finish().map_err(plain)?;
     writer.finish().map_err(plain)
 }
 
-/// The error of the writer below, which the encoder's stream wraps up without its kind.
-fn unwrapped(error: io::Error) -> io::Error {
-    error
-        .downcast::<EncodingError>()
-        .map_or_else(|error| error, plain)
+/// A writer that keeps its first error, which the encoder would make a text of.
+struct Faithful<W> {
+    writer: W,
+    failed: Option<io::Error>,
+}
+
+impl<W: Write> Faithful<W> {
+    fn keep<T>(&mut self, result: io::Result<T>) -> io::Result<T> {
+        result.map_err(|error| {
+            let kind = error.kind();
+            // which is tried again
+            if kind != io::ErrorKind::Interrupted {
+                self.failed.get_or_insert(error);
+            }
+            kind.into()
+        })
+    }
+}
+
+impl<W: Write> Write for Faithful<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let result = self.writer.write(bytes);
+        self.keep(result)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let result = self.writer.flush();
+        self.keep(result)
+    }
 }
 
 fn plain(error: EncodingError) -> io::Error {
     match error {
-        EncodingError::IoError(error) => unwrapped(error),
+        EncodingError::IoError(error) => error,
         other => io::Error::new(io::ErrorKind::InvalidInput, other),
     }
 }
