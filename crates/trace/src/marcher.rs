@@ -315,7 +315,7 @@ mod tests {
         fn advance<R: Rough>(self, at: Step<R>, f: R, threshold: R, _first: R::Mask) -> Advance<R> {
             let step = Step {
                 t: at.t + at.z,
-                z: f.max(0.0) * 1.3 + threshold,
+                z: f.max(0.0) * 1.3 + threshold * 100.0,
                 r: f,
                 m: at.m,
             };

@@ -615,7 +615,7 @@ impl Expression {
         let o = o.beside(self);
         if (self.parts, o.parts) != (3, 3) {
             return self.builder.fail(BuildError::Parts {
-                function: "cross",
+                function: "cross_product",
                 wanted: "two vectors of 3",
                 given: format!("{} and {}", self.spoken(), o.spoken()),
             });

@@ -92,7 +92,7 @@ static FUNCTIONS: &[Function] = functions! {
         .fold(a[0].length(), |length, x| length.hypot(x.length()));
     "distance" ("a", "b") "Distance of two points.", |a| a[0].distance(&a[1]);
     "dot" ("a", "b") "Scalar product.", |a| a[0].dot(&a[1]);
-    "cross" ("a", "b") "Vector product of two vectors of 3.", |a| a[0].cross(&a[1]);
+    "cross_product" ("a", "b") "Vector product of two vectors of 3.", |a| a[0].cross(&a[1]);
     "normalize" ("v") "The vector of length 1 in the same direction.", |a| a[0].normalize();
     "vector" ("x", "y"; true) "A vector of 2 to 4 numbers.", |a| a[0].builder().vector(a);
 };

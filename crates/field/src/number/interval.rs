@@ -406,7 +406,7 @@ impl Real for Interval {
         rest.iter().fold(first.sq(), |s, x| s + x.sq()).sqrt()
     }
     fn unit(self, norm: Self) -> Self {
-        (self / norm).clip(-1.0, 1.0)
+        (self / norm.max(1e-18)).clip(-1.0, 1.0)
     }
     fn sign(self) -> Self {
         let sign = |x: f64| if x < 0.0 { -1.0 } else { 1.0 };

@@ -146,7 +146,7 @@ fn mistakes_are_told() {
     );
     assert_eq!(
         fails(|p| p.cross(p.x())),
-        "cross needs two vectors of 3, not a vector of 3 and a number"
+        "cross_product needs two vectors of 3, not a vector of 3 and a number"
     );
     assert_eq!(
         fails(|p| p.x() + f64::NAN),

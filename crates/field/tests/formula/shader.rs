@@ -1,7 +1,7 @@
 //! Every operation that only the compiler emits is WGSL that naga accepts, with its gradient.
 
 use zeroset_field::formula::{Binary, Unary};
-use zeroset_field::number::{Args, Argument, Dual, Expr, Real, Recorder, Vec3, v3, wgsl};
+use zeroset_field::number::{Args, Argument, Dual, Expr, Real, Recorder, Vec3, wgsl};
 use zeroset_field::op::{Change, Leaf, Warp, arithmetic, domain};
 
 fn validate(name: &str, source: &str) {
@@ -25,10 +25,6 @@ trait Recorded {
     ) -> Vec<R>;
 }
 
-fn point(r: &Recorder) -> Vec3<Expr<'_>> {
-    v3(r.input("p.x"), r.input("p.y"), r.input("p.z"))
-}
-
 fn print(name: &str, recorder: &Recorder, results: &[Expr<'_>]) -> String {
     let arguments = [
         ("p", Argument::Vec3),
@@ -37,35 +33,28 @@ fn print(name: &str, recorder: &Recorder, results: &[Expr<'_>]) -> String {
         ("at", Argument::Offset),
     ];
     let function = recorder.function(name, &arguments, results);
-    wgsl::print(&function.unwrap_or_else(|e| panic!("{e}")))
+    wgsl::print(&function.unwrap_or_else(|error| panic!("{name}: {error}")))
 }
 
 fn prove(name: &str, f: &impl Recorded) {
     let recorder = Recorder::new();
     let values = f.record(
-        point(&recorder),
+        recorder.point("p"),
         recorder.input("d"),
         recorder.input("e"),
         Args::new(&&recorder),
     );
-    let spread: Vec<Expr<'_>> = match values.len() {
-        1 => values,
-        _ => [values.clone(), vec![values[0]]].concat(),
-    };
-    let value = print("value", &recorder, &spread);
+    let value = print("value", &recorder, &values);
     let recorder = Recorder::new();
-    let p = Dual::point(point(&recorder));
+    let p = Dual::point(recorder.point("p"));
     let zero = recorder.input("p.x") * 0.0;
     let number = |name: &str| Dual {
         v: recorder.input(name),
         d: [recorder.input("p.y"), zero, recorder.input("p.z")],
     };
     let values = f.record(p, number("d"), number("e"), Args::new(&&recorder));
-    let gradient = print(
-        "gradient",
-        &recorder,
-        &[values[0].d[0], values[0].d[1], values[0].d[2], values[0].v],
-    );
+    let [x, y, z] = values[0].d;
+    let gradient = print("gradient", &recorder, &[x, y, z, values[0].v]);
     validate(name, &(value + &gradient));
 }
 

@@ -132,8 +132,11 @@ fn print(name: &str, recorder: &Recorder, results: &[Expr<'_>]) -> String {
         ("p", Argument::Vec3),
         ("at", Argument::Offset),
     ];
-    let function = recorder.function(name, &arguments, results);
-    wgsl::print(&function.unwrap_or_else(|e| panic!("{e}")))
+    match recorder.function(name, &arguments, results) {
+        Ok(function) => wgsl::print(&function),
+        // no shader: naga refuses the message, and the failure shows it
+        Err(e) => e.to_string(),
+    }
 }
 
 /// Every level of instructions that this machine has.

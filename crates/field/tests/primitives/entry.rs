@@ -87,8 +87,11 @@ fn shader<P: Primitive>() -> String {
 
 fn print(name: &str, recorder: &Recorder, results: &[Expr<'_>]) -> String {
     let arguments = [("p", Argument::Vec3), ("at", Argument::Offset)];
-    let function = recorder.function(name, &arguments, results);
-    wgsl::print(&function.unwrap_or_else(|e| panic!("{e}")))
+    match recorder.function(name, &arguments, results) {
+        Ok(function) => wgsl::print(&function),
+        // no shader: naga refuses the message, and the failure shows it
+        Err(e) => e.to_string(),
+    }
 }
 
 /// The levels that formulas are compiled for here: programs are tested at all of them.

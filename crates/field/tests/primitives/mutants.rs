@@ -39,7 +39,7 @@ mutants! {
     Thicker |p, a| Cuboid::distance(p, a) - 0.002;
     Jump |p, a| { let d = Cuboid::distance(p, a); R::select(p.x.above(0.2), d * 0.98, d) };
     FarJump |p, a| { let d = Cuboid::distance(p, a); R::select(d.above(0.3), d * 0.95, d) };
-    NotANumber |p, a| { let d = Cuboid::distance(p, a); d + (p.y * 0.0) / (p.x * 0.0) };
+    NotANumber |p, a| { let d = Cuboid::distance(p, a); d + (-(p.y * p.y) - 1.0).sqrt() };
     Absolute |p, a| Cuboid::distance(p, a).min(100.0);
     BadGradient |p, a| { let d = Cuboid::distance(p, a); d + (p.y * p.y).sqrt() * 0.0 / p.y };
 }
