@@ -316,7 +316,7 @@ mod tests {
             let step = Step {
                 t: at.t + at.z,
                 z: f.max(0.0) * 1.3 + threshold * 100.0,
-                r: f,
+                r: f.max(0.0),
                 m: at.m,
             };
             Advance {

@@ -156,15 +156,9 @@ fn lenses() {
 }
 
 #[test]
-fn no_prepass_and_no_reduction() {
+fn no_prepass_and_more_reduction() {
     agree(Settings {
         prepass: false,
-        ..quick()
-    });
-    // without the reduction hits differ by up to half a pixel, and exact normals with them
-    agree(Settings {
-        discontinuity_reduction: 0,
-        normals: Normals::Tetrahedron,
         ..quick()
     });
     agree(Settings {
