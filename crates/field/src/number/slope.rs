@@ -350,7 +350,15 @@ impl Real for Slope {
     }
     fn norm<const N: usize>(v: [Self; N]) -> Self {
         let r = Interval::norm(v.map(|x| x.v));
-        let unit = v.map(|x| x.v.unit(r));
+        let unit = v.map(|x| {
+            let unit = x.v.unit(r);
+            // the gradient of a length has length 1, however small the length is
+            if r.lo < 1e-18 {
+                unit.hull((x.v / r).clip(-1.0, 1.0))
+            } else {
+                unit
+            }
+        });
         let d = [0, 1, 2].map(|k| {
             let column = column(&v, k);
             let dot = (0..N).fold(Interval::point(0.0), |s, i| s + column[i] * unit[i]);
