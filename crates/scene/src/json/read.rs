@@ -28,6 +28,7 @@ type Members = Map<String, Value>;
 
 /// Reads a scene into an empty draft, whose first source is its text.
 pub(crate) fn read(draft: &mut Draft, limits: &Limits) -> Result<(), Box<Report>> {
+    let start = Instant::now();
     let source = draft.sources[0].clone();
     let value: Value =
         serde_json::from_str(&source.text).map_err(|e| Box::new(syntax(&e, &source)))?;
@@ -36,7 +37,7 @@ pub(crate) fn read(draft: &mut Draft, limits: &Limits) -> Result<(), Box<Report>
         nodes: 0,
         materials: 0,
         limits: *limits,
-        start: Instant::now(),
+        start,
     };
     reader
         .scene(&value, draft, &source)
@@ -67,6 +68,9 @@ fn syntax(error: &serde_json::Error, source: &Source) -> Report {
         _ => report,
     }
 }
+
+/// Fields between two looks at the clock.
+const CLOCK: u64 = 256;
 
 struct Reader {
     parts: Vec<Field>,
@@ -380,6 +384,9 @@ impl Reader {
                 self.limits.nodes
             )));
         }
+        if self.nodes.is_multiple_of(CLOCK) {
+            self.check_clock()?;
+        }
         let field = self.node(name, body).map_err(|p| p.at(name))?;
         if field.facts().nodes > self.limits.nodes {
             let nodes = field.facts().nodes;
@@ -392,6 +399,16 @@ impl Reader {
             .at(name));
         }
         Ok(field)
+    }
+
+    fn check_clock(&self) -> Read<()> {
+        let seconds = self.limits.seconds;
+        if self.start.elapsed().as_secs_f64() > seconds {
+            return Err(problem(format!(
+                "loading takes longer than {seconds} seconds (limit `seconds`)"
+            )));
+        }
+        Ok(())
     }
 
     fn node(&mut self, name: &str, body: &Value) -> Read<Field> {
@@ -474,12 +491,7 @@ impl Reader {
             "formula" => {
                 let map = members(body, "formula", &["steps", "bounds", "slope", "proven"])?;
                 // a proof takes up to a tenth of a second
-                if self.start.elapsed().as_secs_f64() > self.limits.seconds {
-                    let seconds = self.limits.seconds;
-                    return Err(problem(format!(
-                        "loading takes longer than {seconds} seconds (limit `seconds`)"
-                    )));
-                }
+                self.check_clock()?;
                 Ok(Field::formula(Arc::new(super::formula::read(map)?)))
             }
             _ => {
