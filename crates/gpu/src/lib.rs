@@ -1,0 +1,1 @@
+//! The GPU renderer of Zeroset, on wgpu.

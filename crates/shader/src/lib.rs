@@ -1,0 +1,1 @@
+//! Shaders of Zeroset: WGSL and GLSL for any scene, without a GPU.
