@@ -17,3 +17,4 @@ pub mod render;
 pub mod report;
 pub mod scene;
 pub mod settings;
+pub mod view;

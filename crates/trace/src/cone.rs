@@ -4,7 +4,6 @@
 //! `(f - w) / (1 + k)` is a distance along the axis: it changes by at most 1 per unit, as the field does along a ray. So
 //! cones are marched like rays, by the same marchers.
 
-use crate::camera::Linear;
 use crate::march::{Arrived, ORDINAL, Sink, Source, Stream, stream};
 use crate::marcher::{Auto, Marcher, Sphere};
 use crate::order;
@@ -14,6 +13,7 @@ use fearless_simd::{Simd, prelude::*};
 use zeroset_field::number::lanes::LaneMask;
 use zeroset_field::number::{Lanes, Ops, Real, Vec3};
 use zeroset_scene::settings::March;
+use zeroset_scene::view::Linear;
 
 /// Sides of the cells that are marched as one cone, in pixels. They nest, each with the next one's sides times 2 or 4.
 const SIDES: [usize; 4] = [32, 8, 4, 2];

@@ -1,6 +1,5 @@
 //! What is done for a tile: the stages, sample by sample.
 
-use crate::camera::View;
 use crate::march::{ITERATIONS, ORDINAL};
 use crate::material::{Place, colour as pattern_colour};
 use crate::normal::{normals, place};
@@ -19,6 +18,7 @@ use zeroset_field::number::{Lanes, Ops, Real};
 use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::material::Material;
 use zeroset_scene::settings::{Antialias, Filter, Occlusion, Shading};
+use zeroset_scene::view::View;
 
 /// All that tiles of one rendering have in common.
 pub(crate) struct Job<'a> {

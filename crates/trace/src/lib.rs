@@ -3,7 +3,6 @@
 mod ao;
 mod beam;
 pub mod bench;
-mod camera;
 mod cone;
 mod job;
 mod march;

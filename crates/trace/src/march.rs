@@ -7,7 +7,6 @@
 //! The word of a ray holds its pixel (12 bits), the iteration in which it began (19 bits, wrapping) and the side that it is
 //! marched on ([`INSIDE`]). Rays are in the order in which they began, so the first ones run out of steps first.
 
-use crate::camera::Linear;
 use crate::marcher::{Marcher, Step};
 use crate::simd::{Chosen, INSIDE, along, first_lanes, load, load_words, load3, sided, store3};
 use crate::tile::{Rays, Solid, Spans};
@@ -16,6 +15,7 @@ use std::ops::Range;
 use zeroset_field::eval::{self, BATCH, Workspace};
 use zeroset_field::number::lanes::LaneMask;
 use zeroset_field::number::{Lanes, Ops, Real, Vec3};
+use zeroset_scene::view::Linear;
 
 /// Where the pixel (or hit) of a word ends and the iteration begins.
 pub(crate) const ORDINAL_BITS: u32 = 12;
@@ -32,7 +32,7 @@ pub(crate) fn age(word: u32, iteration: u32) -> u32 {
 
 /// Where the rays of a stream come from.
 pub(crate) trait Source<S: Simd> {
-    /// What differs from ray to ray (see [`crate::camera::View::ray`]), for those from number `i` on.
+    /// What differs from ray to ray (see [`zeroset_scene::view::View::ray`]), for those from number `i` on.
     fn ray(&self, s: S, i: usize) -> Vec3<Lanes<S>>;
     /// Which of the rays from number `i` on there are.
     fn exists(&self, s: S, i: usize) -> LaneMask<S>;

@@ -1,6 +1,5 @@
 //! Primary rays: from the spans that the prepass found to the list of hits.
 
-use crate::camera::Linear;
 use crate::march::{Arrived, ORDINAL, Sink, Source, Stream, stream};
 use crate::marcher::{Advance, Auto, Enhanced, Fixed, Marcher, Relaxed, Sphere, Step};
 use crate::order;
@@ -11,6 +10,7 @@ use zeroset_field::eval::{self, BATCH};
 use zeroset_field::number::lanes::LaneMask;
 use zeroset_field::number::{Lanes, Ops, Real, Vec3};
 use zeroset_scene::settings::March;
+use zeroset_scene::view::Linear;
 
 /// How the march of a picture is done.
 #[derive(Clone, Copy, Debug)]

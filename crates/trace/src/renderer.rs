@@ -1,6 +1,5 @@
 //! The renderer: tiles over threads, into a film.
 
-use crate::camera::Region;
 use crate::job::Job;
 use crate::resolve::{self, ACCUMULATORS};
 use crate::tile::{Area, HEIGHT, Scratch};
@@ -20,6 +19,7 @@ use zeroset_scene::material::Pattern;
 use zeroset_scene::render::{Evaluations, Frame, Observer, RenderError, Renderer, Statistics};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::Occlusion;
+use zeroset_scene::view::Region;
 
 /// The CPU's renderer: sphere tracing in SIMD streams, over all threads that it is given.
 ///

@@ -1,11 +1,11 @@
 //! The part of a picture that one thread works on at a time, and all the memory that this takes.
 
-use crate::camera::{Linear, Region, View};
 use crate::planes::Planes;
 use crate::simd::{Row, SLACK, Sheet, TILE_RAYS, WordRow, WordSheet};
 use zeroset_field::eval::Workspace;
 use zeroset_field::program::Program;
 use zeroset_scene::render::Evaluations;
+use zeroset_scene::view::{Linear, Region, View};
 
 /// Pixels of a tile from left to right.
 pub(crate) const WIDTH: usize = 64;

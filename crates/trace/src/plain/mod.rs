@@ -11,7 +11,6 @@ mod probe;
 
 pub use probe::{Compiled, Formula, Mark, Probe};
 
-use crate::camera::{Region, View};
 use crate::material::{Place, colour as pattern_colour};
 use crate::sampling::{point, radius, scramble, weight};
 use crate::shade::{Substance, colour, sky};
@@ -24,6 +23,7 @@ use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::material::Material;
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Filter, Settings};
+use zeroset_scene::view::{Region, View};
 
 pub(crate) fn glam(v: zeroset_field::number::Vec3<f32>) -> Vec3 {
     Vec3::new(v.x, v.y, v.z)

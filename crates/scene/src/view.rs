@@ -1,54 +1,60 @@
 //! Rays through pixels, how wide a pixel is along them, and the part of a ray that can meet the scene.
 
-use crate::simd::{constant, each};
+use crate::camera::{Camera, Lens};
 use zeroset_field::bounds::Aabb;
-use zeroset_field::number::{Real, Vec3};
-use zeroset_scene::camera::{Camera, Lens};
+use zeroset_field::number::{Real, Vec3, v3};
 
 /// Evaluations in single precision are off by about this share of the largest coordinate.
-pub(crate) const ROUNDING: f32 = 4.0 * f32::EPSILON;
+pub const ROUNDING: f32 = 4.0 * f32::EPSILON;
 
 /// A number that grows evenly along a ray: `slope * t + constant`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Linear {
-    pub(crate) slope: f32,
-    pub(crate) constant: f32,
+pub struct Linear {
+    /// Growth per unit of `t`.
+    pub slope: f32,
+    /// Value at 0.
+    pub constant: f32,
 }
 
 impl Linear {
     /// The value at `t`.
     #[inline(always)]
-    pub(crate) fn at<R: Real<Scalar = f32>>(self, t: R) -> R {
+    pub fn at<R: Real<Scalar = f32>>(self, t: R) -> R {
         t * self.slope + self.constant
     }
 }
 
 /// A camera with a picture size: what turns pixels into rays.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct View {
-    pub(crate) pinhole: bool,
-    eye: [f32; 3],
-    right: [f32; 3],
-    up: [f32; 3],
-    back: [f32; 3],
+pub struct View {
+    /// Whether all rays go through the eye; else they are parallel.
+    pub pinhole: bool,
+    /// Where the camera is.
+    pub eye: [f32; 3],
+    /// To the right of the picture.
+    pub right: [f32; 3],
+    /// Upwards on the picture.
+    pub up: [f32; 3],
+    /// Against the way the camera looks.
+    pub back: [f32; 3],
     /// Side of a pixel on the plane at distance 1 (pinhole), or anywhere (orthographic).
-    pub(crate) scale: f32,
+    pub scale: f32,
     /// Half the picture's size in pixels.
-    half: [f32; 2],
+    pub half: [f32; 2],
     /// Rays start here.
-    pub(crate) near: f32,
+    pub near: f32,
     /// Rays end here at the latest.
-    pub(crate) far: f32,
+    pub far: f32,
     /// Full width of a pixel along its ray.
-    pub(crate) pixel: Linear,
+    pub pixel: Linear,
     /// A value of the field below this is a hit.
-    pub(crate) threshold: Linear,
+    pub threshold: Linear,
 }
 
 impl View {
     /// `footprint`: a hit is nearer to the surface than this many pixel widths, but never nearer than single precision can
     /// tell.
-    pub(crate) fn new(camera: &Camera, [width, height]: [u32; 2], footprint: f32) -> View {
+    pub fn new(camera: &Camera, [width, height]: [u32; 2], footprint: f32) -> View {
         let (slope, constant) = camera.pixel_width(height);
         let pixel = Linear { slope, constant };
         let scale = camera.plane_height() / height as f32;
@@ -92,30 +98,30 @@ impl View {
 
     /// What of the ray through (`x`, `y`) pixels differs from ray to ray: the direction (pinhole) or the origin.
     #[inline(always)]
-    pub(crate) fn ray<R: Real<Scalar = f32>>(&self, x: R, y: R) -> Vec3<R> {
+    pub fn ray<R: Real<Scalar = f32>>(&self, x: R, y: R) -> Vec3<R> {
         let (u, v) = self.plane(x, y);
         if self.pinhole {
             self.slant(u, v).normalize()
         } else {
-            each(
-                #[inline(always)]
-                |k| u * self.right[k] + v * self.up[k] + self.eye[k],
-            )
+            self.across(u, v, self.eye)
         }
     }
 
     /// The direction through (`u`, `v`) on the plane at distance 1, not normalised.
     #[inline(always)]
     fn slant<R: Real<Scalar = f32>>(&self, u: R, v: R) -> Vec3<R> {
-        each(
-            #[inline(always)]
-            |k| u * self.right[k] + v * self.up[k] - self.back[k],
-        )
+        self.across(u, v, self.back.map(|c| -c))
+    }
+
+    /// The place (`u`, `v`) on the plane of the picture, from `origin`.
+    #[inline(always)]
+    fn across<R: Real<Scalar = f32>>(&self, u: R, v: R, origin: [f32; 3]) -> Vec3<R> {
+        constant(u, self.right) * u + constant(u, self.up) * v + constant(u, origin)
     }
 
     /// Origin and direction from what [`View::ray`] gave.
     #[inline(always)]
-    pub(crate) fn split<R: Real<Scalar = f32>>(&self, ray: Vec3<R>) -> (Vec3<R>, Vec3<R>) {
+    pub fn split<R: Real<Scalar = f32>>(&self, ray: Vec3<R>) -> (Vec3<R>, Vec3<R>) {
         if self.pinhole {
             (constant(ray.x, self.eye), ray)
         } else {
@@ -128,7 +134,7 @@ impl View {
     ///
     /// The slope is the tangent of the largest angle to a corner: one to an edge would leave the corners out.
     #[inline(always)]
-    pub(crate) fn cone<R: Real<Scalar = f32>>(&self, x: R, y: R, reach: f32) -> (R, f32) {
+    pub fn cone<R: Real<Scalar = f32>>(&self, x: R, y: R, reach: f32) -> (R, f32) {
         let (u, v) = self.plane(x, y);
         let e = reach * self.scale;
         if !self.pinhole {
@@ -148,14 +154,16 @@ impl View {
 
 /// A box that holds the whole solid, in single precision.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Region {
-    min: [f32; 3],
-    max: [f32; 3],
+pub struct Region {
+    /// Least coordinates.
+    pub min: [f32; 3],
+    /// Largest coordinates.
+    pub max: [f32; 3],
 }
 
 impl Region {
     /// The smallest such box of single precision numbers.
-    pub(crate) fn new(bounds: &Aabb) -> Region {
+    pub fn new(bounds: &Aabb) -> Region {
         Region {
             min: bounds.min.map(|x| {
                 if f64::from(x as f32) > x {
@@ -179,13 +187,7 @@ impl Region {
     /// Beyond the plane of one side, the distance to the box grows by the cosine `c` to that side and is at least
     /// `c t - d`, with `d` the distance to the plane at the start.
     #[inline(always)]
-    pub(crate) fn leave<R: Real<Scalar = f32>>(
-        &self,
-        o: Vec3<R>,
-        d: Vec3<R>,
-        slope: R,
-        constant: R,
-    ) -> R {
+    pub fn leave<R: Real<Scalar = f32>>(&self, o: Vec3<R>, d: Vec3<R>, slope: R, constant: R) -> R {
         let mut end = o.x.lit(f32::INFINITY);
         let (o, d) = (o.array(), d.array());
         for k in 0..3 {
@@ -200,13 +202,7 @@ impl Region {
 
     /// Up to this `t` the ray is farther from the box than `slope * t + constant`. Zero where it starts near it.
     #[inline(always)]
-    pub(crate) fn enter<R: Real<Scalar = f32>>(
-        &self,
-        o: Vec3<R>,
-        d: Vec3<R>,
-        slope: R,
-        constant: R,
-    ) -> R {
+    pub fn enter<R: Real<Scalar = f32>>(&self, o: Vec3<R>, d: Vec3<R>, slope: R, constant: R) -> R {
         let mut start = o.x.lit(0.0);
         let (o, d) = (o.array(), d.array());
         for k in 0..3 {
@@ -218,11 +214,16 @@ impl Region {
     }
 }
 
+/// `c` as numbers of the company of `x`.
+#[inline(always)]
+fn constant<R: Real<Scalar = f32>>(x: R, c: [f32; 3]) -> Vec3<R> {
+    v3(x.lit(c[0]), x.lit(c[1]), x.lit(c[2]))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use glam::Vec3 as G;
-    use zeroset_field::number::v3;
 
     fn cameras() -> [Camera; 2] {
         let lens = [
