@@ -145,6 +145,11 @@ impl Program {
         &self.structure
     }
 
+    /// The same, shared.
+    pub fn shared_structure(&self) -> Arc<Structure> {
+        Arc::clone(&self.structure)
+    }
+
     /// Its numbers.
     pub fn params(&self) -> &[f32] {
         &self.params

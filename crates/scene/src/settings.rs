@@ -31,7 +31,7 @@ pub enum March {
 }
 
 /// How the normal of a hit is found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Normals {
     /// Four samples at the corners of a tetrahedron.
@@ -134,7 +134,7 @@ pub enum Occlusion {
 }
 
 /// Shape of a pixel's filter.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Filter {
     /// One pixel wide, constant.
@@ -162,7 +162,7 @@ pub enum Antialias {
 }
 
 /// Which light model turns a hit into a colour.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Shading {
     /// Ambient, diffuse and Blinn's specular term with `facing` (Tomczak 2012, equations 3.1 to 3.5).

@@ -1,1 +1,11 @@
-//! Shaders of Zeroset: WGSL and GLSL for any scene, without a GPU.
+//! Shaders of Zeroset: WGSL and GLSL for any scene. Nothing here needs a GPU.
+//!
+//! A module is put together from the recorded field ([`zeroset_field`]), the stage files in `stage/` (each named like its
+//! twin of the CPU renderer) and structs that are declared once, in [`layout`].
+
+pub mod entry;
+pub mod job;
+pub mod layout;
+mod source;
+
+pub use job::{FieldForm, Job, Shaders};

@@ -1,0 +1,142 @@
+//! The entry points of a shader module, and the buffers that each uses.
+
+/// Threads of a workgroup along each of two axes.
+pub const WORKGROUP: u32 = 8;
+/// Side of the cells that `cones_wide` and `cones_narrow` march, in pixels.
+pub const CONE_SIDES: [u32; 2] = [32, 8];
+/// Pixels that samples reach over the edge of their own, at most.
+pub const MARGIN: u32 = 2;
+/// Counters that shaders add to: pairs of the low and high half of 64 bits for evaluations of prepass, march, normals,
+/// occlusion, shadows, materials, and for primary rays and hits.
+pub const COUNTERS: u32 = 16;
+
+/// A buffer of bind group 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u32)]
+pub enum Binding {
+    /// [`crate::layout::Frame`], uniform.
+    Frame = 0,
+    /// [`crate::layout::Tile`], uniform with a dynamic offset.
+    Tile = 1,
+    /// Parameters of the field: `array<f32>`, read only.
+    Params = 2,
+    /// Instructions of an interpreted field: `array<u32>`, read only.
+    Code = 3,
+    /// Lights, materials, objects, images: `array<vec4f>`, read only.
+    Table = 4,
+    /// Starts, slopes and radii of cones: `array<vec4f>`.
+    Cones = 5,
+    /// [`crate::layout::Sample`] of every stored pixel.
+    Samples = 6,
+    /// [`crate::layout::LightSum`] of every given pixel.
+    Light = 7,
+    /// [`crate::layout::SurfaceSum`] of every given pixel.
+    Surface = 8,
+    /// The planes that are asked for, one after the other: `array<f32>`.
+    Planes = 9,
+    /// [`COUNTERS`] atomic `u32`.
+    Counters = 10,
+}
+
+impl Binding {
+    /// All of them.
+    pub const ALL: [Binding; 11] = [
+        Binding::Frame,
+        Binding::Tile,
+        Binding::Params,
+        Binding::Code,
+        Binding::Table,
+        Binding::Cones,
+        Binding::Samples,
+        Binding::Light,
+        Binding::Surface,
+        Binding::Planes,
+        Binding::Counters,
+    ];
+
+    /// Its declaration in WGSL.
+    pub(crate) fn declaration(self) -> String {
+        let (space, name, kind) = match self {
+            Binding::Frame => ("uniform", "frame", "Frame"),
+            Binding::Tile => ("uniform", "tile", "Tile"),
+            Binding::Params => ("storage, read", "params", "array<f32>"),
+            Binding::Code => ("storage, read", "code", "array<u32>"),
+            Binding::Table => ("storage, read", "table", "array<vec4f>"),
+            Binding::Cones => ("storage, read_write", "cones", "array<vec4f>"),
+            Binding::Samples => ("storage, read_write", "samples", "array<Sample>"),
+            Binding::Light => ("storage, read_write", "light_sums", "array<LightSum>"),
+            Binding::Surface => ("storage, read_write", "surface_sums", "array<SurfaceSum>"),
+            Binding::Planes => ("storage, read_write", "planes", "array<f32>"),
+            Binding::Counters => ("storage, read_write", "counters", "array<atomic<u32>, 16>"),
+        };
+        format!(
+            "@group(0) @binding({}) var<{space}> {name}: {kind};\n",
+            self as u32
+        )
+    }
+}
+
+/// An entry point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// Its name.
+    pub name: &'static str,
+    /// What it may use.
+    pub bindings: &'static [Binding],
+}
+
+/// One thread for every cell of 32x32 pixels that overlaps the band's stored rows.
+pub const CONES_WIDE: Entry = Entry {
+    name: "cones_wide",
+    bindings: &[
+        Binding::Frame,
+        Binding::Params,
+        Binding::Code,
+        Binding::Cones,
+        Binding::Counters,
+    ],
+};
+/// One thread for every cell of 8x8 pixels that overlaps the band's stored rows. Runs after `cones_wide`.
+pub const CONES_NARROW: Entry = Entry {
+    name: "cones_narrow",
+    bindings: CONES_WIDE.bindings,
+};
+/// One thread for every pixel of the tile: one ray.
+pub const TRACE: Entry = Entry {
+    name: "trace",
+    bindings: &[
+        Binding::Frame,
+        Binding::Tile,
+        Binding::Params,
+        Binding::Code,
+        Binding::Table,
+        Binding::Cones,
+        Binding::Samples,
+        Binding::Counters,
+    ],
+};
+/// One thread for every pixel of the tile, which lies in the band's given rows: adds the samples around it up.
+pub const GATHER: Entry = Entry {
+    name: "gather",
+    bindings: &[
+        Binding::Frame,
+        Binding::Tile,
+        Binding::Samples,
+        Binding::Light,
+        Binding::Surface,
+    ],
+};
+/// One thread for every pixel of the tile, which lies in the band's given rows: from sums to planes.
+pub const DEVELOP: Entry = Entry {
+    name: "develop",
+    bindings: &[
+        Binding::Frame,
+        Binding::Tile,
+        Binding::Light,
+        Binding::Surface,
+        Binding::Planes,
+    ],
+};
+
+/// All entry points of a shader module.
+pub const ENTRIES: [Entry; 5] = [CONES_WIDE, CONES_NARROW, TRACE, GATHER, DEVELOP];

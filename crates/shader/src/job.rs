@@ -1,0 +1,375 @@
+//! A scene as numbers for a shader: what changes from picture to picture, in buffers.
+
+use crate::entry::{CONE_SIDES, MARGIN};
+use crate::layout::{Frame, Light, Material, Occluder, rows};
+use crate::source::Key;
+use std::collections::HashMap;
+use std::sync::Arc;
+use zeroset_field::bounds::Aabb;
+use zeroset_field::catalogue::entries::catalogue;
+use zeroset_field::field::Field;
+use zeroset_field::program::{Limits, Program};
+use zeroset_scene::film::Plane;
+use zeroset_scene::light::Source as LightSource;
+use zeroset_scene::material::{self, Pattern};
+use zeroset_scene::render::RenderError;
+use zeroset_scene::scene::Scene;
+use zeroset_scene::settings::{Antialias, Filter, March, Occlusion, Shadow};
+use zeroset_scene::view::{Region, View};
+
+/// How the field gets into the shader.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum FieldForm {
+    /// As code where it is short enough, else as data.
+    #[default]
+    Auto,
+    /// As code: the fastest, but a driver takes long to compile much of it.
+    Compiled,
+    /// As data: a loop over the instructions.
+    Interpreted,
+}
+
+/// Fields of more instructions than this (values and marks together) are interpreted.
+pub const LONGEST_COMPILED: usize = 400;
+
+/// Makes jobs of scenes, and remembers the text of their shaders: equal structure, equal text.
+#[derive(Debug, Default)]
+pub struct Shaders {
+    form: FieldForm,
+    limits: Limits,
+    texts: HashMap<Key, (Arc<str>, Arc<[u32]>)>,
+}
+
+/// Texts that are remembered.
+const REMEMBERED: usize = 64;
+
+/// All that a GPU needs for a picture.
+#[derive(Clone, Debug)]
+pub struct Job {
+    /// The shader module, in WGSL. Equal for scenes of equal structure.
+    pub source: Arc<str>,
+    /// Everything that is one number, for a picture in one band; see [`Job::band`].
+    pub frame: Frame,
+    /// Parameters of the field.
+    pub params: Vec<f32>,
+    /// Instructions of an interpreted field, else one word.
+    pub code: Arc<[u32]>,
+    /// Lights, materials, objects, images.
+    pub table: Vec<[f32; 4]>,
+}
+
+impl Shaders {
+    /// With nothing remembered.
+    pub fn new(form: FieldForm) -> Shaders {
+        Shaders {
+            form,
+            ..Shaders::default()
+        }
+    }
+
+    /// Compiles a scene.
+    ///
+    /// # Errors
+    /// See [`RenderError`].
+    pub fn prepare(&mut self, scene: &Scene) -> Result<Job, RenderError> {
+        let (program, region) = match scene.field()? {
+            Some(field) => {
+                let program = Program::compile(&field, &self.limits)?;
+                let region = Region::new(&program.bounds());
+                (program, region)
+            }
+            None => {
+                // no ray goes into an empty region: the program stands for nothing
+                let sphere = &catalogue().primitives[0];
+                let field = Field::primitive(sphere, sphere.info.defaults())?;
+                (
+                    Program::compile(&field, &self.limits)?,
+                    Region::new(&Aabb::EMPTY),
+                )
+            }
+        };
+        let key = Key::new(scene, &program, self.form);
+        if self.texts.len() > REMEMBERED {
+            self.texts.clear();
+        }
+        let (source, code) = (self.texts.entry(key))
+            .or_insert_with_key(|key| {
+                let (text, code) = key.source();
+                (text.into(), code.into())
+            })
+            .clone();
+        let (table, frame) = tables(
+            scene,
+            Frame {
+                hit_selection: u32::from(scene.settings.hit_selection),
+                ..frame(scene, &region)
+            },
+        );
+        Ok(Job {
+            source,
+            frame,
+            params: program.params().to_vec(),
+            code,
+            table,
+        })
+    }
+}
+
+impl Job {
+    /// Rays a pixel.
+    pub fn samples(&self) -> u32 {
+        self.frame.samples.max(1)
+    }
+
+    /// Rows that a band must store above and below those that it gives.
+    pub fn margin(&self) -> u32 {
+        if self.frame.samples == 0 {
+            0
+        } else {
+            self.frame.filter_kind.min(MARGIN)
+        }
+    }
+
+    /// Whether cones are marched before rays.
+    pub fn prepass(&self) -> bool {
+        self.frame.prepass != 0
+    }
+
+    /// The frame of the band that gives `count` rows from `first` on, with the planes that are asked for one after the
+    /// other.
+    pub fn band(&self, first: u32, count: u32, planes: &[Plane]) -> Frame {
+        let from = first.saturating_sub(self.margin());
+        let to = (first + count + self.margin()).min(self.frame.size[1]);
+        let mut places = [u32::MAX; 12];
+        let mut at = 0;
+        for plane in planes {
+            places[*plane as usize] = at;
+            at += plane.channels() as u32 * count * self.frame.size[0];
+        }
+        let mut frame = Frame {
+            band: [from, to - from, first, count],
+            planes_a: [places[0], places[1], places[2], places[3]],
+            planes_b: [places[4], places[5], places[6], places[7]],
+            planes_c: [places[8], places[9], u32::MAX, u32::MAX],
+            ..self.frame
+        };
+        let [across, down] = frame.cells(CONE_SIDES[0]);
+        frame.wide_cones = across * down;
+        frame
+    }
+}
+
+impl Frame {
+    /// Cells of this side, across and down, that overlap the rows that the band stores.
+    pub fn cells(&self, side: u32) -> [u32; 2] {
+        let [first, count, ..] = self.band;
+        let down = (first + count).div_ceil(side) - first / side;
+        [self.size[0].div_ceil(side), down]
+    }
+
+    /// Cones of both sizes.
+    pub fn cones(&self) -> u32 {
+        CONE_SIDES
+            .iter()
+            .map(|&side| self.cells(side))
+            .map(|[across, down]| across * down)
+            .sum()
+    }
+}
+
+fn frame(scene: &Scene, region: &Region) -> Frame {
+    let settings = &scene.settings;
+    let view = View::new(&scene.camera, settings.size, settings.footprint);
+    let (samples, filter) = match settings.antialias {
+        Antialias::None => (0, Filter::Box),
+        Antialias::Supersample { samples, filter } => (samples.max(1), filter),
+    };
+    let sky = &scene.sky;
+    Frame {
+        eye: view.eye,
+        pinhole: u32::from(view.pinhole),
+        right: view.right,
+        scale: view.scale,
+        up: view.up,
+        near: view.near,
+        back: view.back,
+        far: view.far,
+        region_min: region.min,
+        region_max: region.max,
+        max_steps: settings.max_steps.max(1),
+        pixel: [view.pixel.slope, view.pixel.constant],
+        threshold: [view.threshold.slope, view.threshold.constant],
+        size: settings.size,
+        half: view.half,
+        march: match settings.march {
+            March::Fixed { step } => step,
+            March::Sphere => 1.0,
+            March::Relaxed { omega } => omega,
+            March::Enhanced { share } => share,
+            March::Auto { beta } => beta,
+        },
+        placing: settings.discontinuity_reduction,
+        samples,
+        seed: settings.seed,
+        sky_top: sky.top.to_array(),
+        ambient: sky.ambient,
+        sky_horizon: sky.horizon.to_array(),
+        filter_kind: match filter {
+            Filter::Box => 0,
+            Filter::Tent => 1,
+            Filter::Mitchell => 2,
+        },
+        sky_bottom: sky.bottom.to_array(),
+        prepass: u32::from(settings.prepass),
+        miss: f32::INFINITY,
+        ..Frame::default()
+    }
+}
+
+/// The table, and the frame that knows where in it everything is.
+fn tables(scene: &Scene, mut frame: Frame) -> (Vec<[f32; 4]>, Frame) {
+    let mut table = Vec::new();
+    frame.lights = scene.lights.len() as u32;
+    frame.light_rows = 0;
+    for light in &scene.lights {
+        push(&mut table, light_row(light));
+    }
+    frame.object_rows = table.len() as u32;
+    frame.objects = scene.objects.len() as u32;
+    for object in &scene.objects {
+        push(
+            &mut table,
+            occluder(object.occlusion.unwrap_or(scene.settings.occlusion)),
+        );
+    }
+    push(&mut table, occluder(scene.settings.occlusion));
+    frame.material_rows = table.len() as u32;
+    frame.materials = scene.materials.len() as u32;
+    let fallback = material::Material::default();
+    let mut image = table.len() + (scene.materials.len() + 1) * rows::<Material>();
+    let mut images = Vec::new();
+    for material in scene.materials.iter().chain([&fallback]) {
+        push(&mut table, material_row(material, image));
+        if let Pattern::Triplanar { image: picture, .. } = &material.pattern {
+            image += picture.pixels.len();
+            images.push(picture);
+        }
+    }
+    for picture in images {
+        table.extend(picture.pixels.iter().map(|c| [c.x, c.y, c.z, 0.0]));
+    }
+    (table, frame)
+}
+
+fn push<T: bytemuck::Pod>(table: &mut Vec<[f32; 4]>, row: T) {
+    table.extend_from_slice(bytemuck::cast_slice(std::slice::from_ref(&row)));
+}
+
+fn light_row(light: &zeroset_scene::light::Light) -> Light {
+    let (kind, place) = match light.source {
+        LightSource::Directional { direction } => (0.0, -direction),
+        LightSource::Point { position } => (1.0, position),
+    };
+    let (shadow, sharpness) = match light.shadow {
+        Shadow::None => (0.0, 0.0),
+        Shadow::Hard => (1.0, 0.0),
+        Shadow::Soft { sharpness } => (2.0, sharpness),
+        Shadow::SoftClosest { sharpness } => (3.0, sharpness),
+    };
+    let c = light.radiance;
+    Light {
+        place: place.to_array(),
+        kind,
+        radiance: c.to_array(),
+        luminance: 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z,
+        shadow,
+        sharpness,
+        ..Light::default()
+    }
+}
+
+fn occluder(method: Occlusion) -> Occluder {
+    let kind = crate::source::occlusion_kind(&method) as f32;
+    let of = |count: u32, reach: f32, scale: f32, bend: f32| Occluder {
+        kind,
+        count: count as f32,
+        reach,
+        scale,
+        bend,
+        ..Occluder::default()
+    };
+    match method {
+        Occlusion::None => of(0, 0.0, 0.0, 0.0),
+        Occlusion::Quilez { steps, step, scale } => of(steps, step, scale, 0.0),
+        Occlusion::Bent {
+            steps,
+            step,
+            scale,
+            bend,
+        } => of(steps, step, scale, bend),
+        Occlusion::Evans { scale, step, bend } => of(4, step, scale, bend),
+        Occlusion::Upward { scale } => of(0, 0.0, scale, 0.0),
+        Occlusion::Cones { reach, steps } => of(steps, reach, 0.0, 0.0),
+        Occlusion::Hemisphere { rays, reach } => of(rays, reach, 0.0, 0.0),
+        Occlusion::Obscurance { rays, reach, tau } => of(rays, reach, tau, 0.0),
+    }
+}
+
+fn material_row(material: &material::Material, image: usize) -> Material {
+    let zero = [0.0; 3];
+    let mut row = Material {
+        kind: crate::source::pattern_kind(&material.pattern) as f32,
+        specular: material.specular,
+        shininess: material.shininess,
+        metallic: material.metallic,
+        roughness: material.roughness,
+        emission: material.emission.to_array(),
+        image: image as f32,
+        ..Material::default()
+    };
+    let mut colours = |all: &[glam::Vec3]| {
+        let at = |k: usize| all.get(k).map_or(zero, |c| c.to_array());
+        (row.a, row.b, row.c, row.d) = (at(0), at(1), at(2), at(3));
+    };
+    match &material.pattern {
+        Pattern::Solid { colour } => colours(&[*colour]),
+        Pattern::Checker {
+            colours: [a, b],
+            size,
+        } => {
+            colours(&[*a, *b]);
+            row.size = *size;
+        }
+        Pattern::Stripes {
+            colours: [a, b],
+            direction,
+            size,
+        } => {
+            colours(&[*a, *b, *direction]);
+            row.size = *size;
+        }
+        Pattern::Noise {
+            colours: [a, b],
+            size,
+            octaves,
+        } => {
+            colours(&[*a, *b]);
+            (row.size, row.detail) = (*size, *octaves as f32);
+        }
+        Pattern::Gradient {
+            colours: [a, b],
+            from,
+            to,
+        } => colours(&[*a, *b, *from, *to]),
+        Pattern::Triplanar {
+            image,
+            size,
+            sharpness,
+        } => {
+            (row.size, row.detail) = (*size, *sharpness);
+            (row.width, row.height) = (image.width as f32, image.height as f32);
+        }
+        Pattern::Orbit { colours: all } => colours(all),
+    }
+    row
+}

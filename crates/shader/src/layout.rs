@@ -1,0 +1,330 @@
+//! What the CPU writes and shaders read: structs that are declared once, here, and printed as WGSL.
+//!
+//! A struct of this module has the same layout on both sides; a test compares every offset with what naga makes of the
+//! printed declaration.
+
+use bytemuck::{Pod, Zeroable};
+
+/// A field of a shared struct.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Member {
+    /// Its name.
+    pub name: &'static str,
+    /// Its type in WGSL.
+    pub wgsl: &'static str,
+    /// Where it begins, in bytes.
+    pub offset: usize,
+}
+
+/// A struct that both sides know.
+pub trait Shared: Pod {
+    /// Its name.
+    const NAME: &'static str;
+    /// Its fields, in order.
+    const MEMBERS: &'static [Member];
+
+    /// Its declaration in WGSL.
+    fn declaration() -> String {
+        let fields: String = (Self::MEMBERS.iter())
+            .map(|m| format!("    {}: {},\n", m.name, m.wgsl))
+            .collect();
+        format!("struct {} {{\n{fields}}}\n", Self::NAME)
+    }
+}
+
+/// A type that has the same meaning in WGSL.
+trait Wgsl {
+    const WGSL: &'static str;
+}
+
+macro_rules! wgsl {
+    ($($rust:ty = $wgsl:literal),*) => { $(impl Wgsl for $rust { const WGSL: &'static str = $wgsl; })* };
+}
+wgsl!(
+    f32 = "f32",
+    u32 = "u32",
+    [f32; 2] = "vec2f",
+    [u32; 2] = "vec2u",
+    [f32; 3] = "vec3f",
+    [u32; 4] = "vec4u"
+);
+
+macro_rules! shared {
+    ($($(#[$meta:meta])* $name:ident { $($(#[$field_meta:meta])* $field:ident: $type:ty,)* })*) => { $(
+        $(#[$meta])*
+        #[repr(C)]
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+        pub struct $name { $($(#[$field_meta])* pub $field: $type,)* }
+
+        impl Shared for $name {
+            const NAME: &'static str = stringify!($name);
+            const MEMBERS: &'static [Member] = &[$(Member {
+                name: stringify!($field),
+                wgsl: <$type as Wgsl>::WGSL,
+                offset: std::mem::offset_of!($name, $field),
+            }),*];
+        }
+    )* };
+}
+
+shared! {
+    /// Everything about a picture that is one number: camera, methods' numbers, sky, sizes, places of tables.
+    Frame {
+        /// Where the camera is.
+        eye: [f32; 3],
+        /// 1 if all rays go through the eye, 0 if they are parallel.
+        pinhole: u32,
+        /// To the right of the picture.
+        right: [f32; 3],
+        /// Side of a pixel on the plane at distance 1 (pinhole), or anywhere (orthographic).
+        scale: f32,
+        /// Upwards on the picture.
+        up: [f32; 3],
+        /// Rays start here.
+        near: f32,
+        /// Against the way the camera looks.
+        back: [f32; 3],
+        /// Rays end here at the latest.
+        far: f32,
+        /// Least coordinates of a box that holds the solid.
+        region_min: [f32; 3],
+        /// 1 if a ray that runs out of steps takes its best candidate.
+        hit_selection: u32,
+        /// Largest coordinates of that box.
+        region_max: [f32; 3],
+        /// Most steps of a ray.
+        max_steps: u32,
+        /// Width of a pixel along its ray: slope and constant.
+        pixel: [f32; 2],
+        /// A value of the field below this is a hit: slope and constant.
+        threshold: [f32; 2],
+        /// The picture's size in pixels.
+        size: [u32; 2],
+        /// Half of it.
+        half: [f32; 2],
+        /// Number of the marcher: step, omega, share or beta.
+        march: f32,
+        /// Fixed-point steps behind a hit.
+        placing: u32,
+        /// Rays a pixel; 0 for one through its middle.
+        samples: u32,
+        /// Chooses other random numbers.
+        seed: u32,
+        /// Linear colour of the sky straight up.
+        sky_top: [f32; 3],
+        /// Share of the sky's light that reaches an open surface.
+        ambient: f32,
+        /// Linear colour at the horizon.
+        sky_horizon: [f32; 3],
+        /// Pixel filter: 0 box, 1 tent, 2 Mitchell.
+        filter_kind: u32,
+        /// Linear colour straight down.
+        sky_bottom: [f32; 3],
+        /// 1 if cones were marched first.
+        prepass: u32,
+        /// What the depth plane holds where nothing is hit.
+        miss: f32,
+        /// Number of lights.
+        lights: u32,
+        /// First row of the lights in the table.
+        light_rows: u32,
+        /// First row of the materials; the last of them is for what has none.
+        material_rows: u32,
+        /// Number of materials, without that last one.
+        materials: u32,
+        /// First row of the objects' occlusion; the last is the scene's own.
+        object_rows: u32,
+        /// Number of objects.
+        objects: u32,
+        /// Cells of 32x32 pixels in the band: those of 8x8 pixels come after them in `cones`.
+        wide_cones: u32,
+        /// Rows of pixels: the first that the band stores, how many it stores, the first that it gives, how many it gives.
+        band: [u32; 4],
+        /// Where planes 0 to 3 begin in `planes`, in numbers; 0xffffffff for one that is not asked for.
+        planes_a: [u32; 4],
+        /// Planes 4 to 7.
+        planes_b: [u32; 4],
+        /// Planes 8 and 9.
+        planes_c: [u32; 4],
+    }
+
+    /// What one dispatch covers.
+    Tile {
+        /// First pixel of the picture.
+        corner: [u32; 2],
+        /// Width and height in pixels.
+        size: [u32; 2],
+        /// Which of the rays a pixel.
+        index: u32,
+        /// Not used.
+        pad_a: u32,
+        /// Not used.
+        pad_b: u32,
+        /// Not used.
+        pad_c: u32,
+    }
+
+    /// A light, as rows of the table.
+    Light {
+        /// The way towards it (kind 0), or where it is (kind 1).
+        place: [f32; 3],
+        /// 0 directional, 1 point.
+        kind: f32,
+        /// Linear colour times intensity.
+        radiance: [f32; 3],
+        /// Luminance of that.
+        luminance: f32,
+        /// 0 none, 1 hard, 2 soft, 3 soft with the closest place.
+        shadow: f32,
+        /// Sharpness of the penumbra.
+        sharpness: f32,
+        /// Not used.
+        pad_a: f32,
+        /// Not used.
+        pad_b: f32,
+    }
+
+    /// An ambient occlusion method, as rows of the table.
+    Occluder {
+        /// Its place in `zeroset_scene::settings::Occlusion`.
+        kind: f32,
+        /// Samples or rays.
+        count: f32,
+        /// Step or reach, scene units.
+        reach: f32,
+        /// Strength, or the falloff of obscurance.
+        scale: f32,
+        /// How far the way bends.
+        bend: f32,
+        /// Not used.
+        pad_a: f32,
+        /// Not used.
+        pad_b: f32,
+        /// Not used.
+        pad_c: f32,
+    }
+
+    /// A material, as rows of the table.
+    Material {
+        /// Its place in `zeroset_scene::material::Pattern`.
+        kind: f32,
+        /// Size of the pattern, scene units.
+        size: f32,
+        /// Octaves of noise, or sharpness of a projection.
+        detail: f32,
+        /// Strength of the highlight.
+        specular: f32,
+        /// First colour.
+        a: [f32; 3],
+        /// Exponent of the highlight.
+        shininess: f32,
+        /// Second colour.
+        b: [f32; 3],
+        /// 0 plastic, 1 metal.
+        metallic: f32,
+        /// Third colour, a direction, or where a gradient begins.
+        c: [f32; 3],
+        /// 0 mirror, 1 chalk.
+        roughness: f32,
+        /// Fourth colour, or where a gradient ends.
+        d: [f32; 3],
+        /// First row of the image in the table.
+        image: f32,
+        /// Light of its own.
+        emission: [f32; 3],
+        /// Width of the image.
+        width: f32,
+        /// Height of the image.
+        height: f32,
+        /// Not used.
+        pad_a: f32,
+        /// Not used.
+        pad_b: f32,
+        /// Not used.
+        pad_c: f32,
+    }
+
+    /// What one ray found.
+    Sample {
+        /// Linear colour.
+        colour: [f32; 3],
+        /// Distance along the ray, or -1 where nothing was hit.
+        depth: f32,
+        /// Unit normal.
+        normal: [f32; 3],
+        /// |f| at the hit.
+        residual: f32,
+        /// Linear colour of the surface.
+        albedo: [f32; 3],
+        /// Ambient visibility.
+        open: f32,
+        /// Visibility of the lights.
+        shadow: f32,
+        /// Number of the object plus 1.
+        object: f32,
+        /// Evaluations of the primary ray.
+        steps: f32,
+        /// Not used.
+        pad: f32,
+    }
+
+    /// Filtered sums of a pixel.
+    LightSum {
+        /// Weighted colours.
+        colour: [f32; 3],
+        /// Weights.
+        weight: f32,
+        /// Weighted hits.
+        cover: f32,
+        /// Own rays that hit.
+        hits: f32,
+        /// Their evaluations, and those of the own rays that did not.
+        steps: f32,
+        /// Own rays.
+        rays: f32,
+    }
+
+    /// Sums over a pixel's own rays that hit.
+    SurfaceSum {
+        /// Normals.
+        normal: [f32; 3],
+        /// Distance of the nearest hit, or -1.
+        depth: f32,
+        /// Colours of the surface.
+        albedo: [f32; 3],
+        /// |f| at the nearest hit.
+        residual: f32,
+        /// Ambient visibility.
+        open: f32,
+        /// Visibility of the lights.
+        shadow: f32,
+        /// Number of the nearest object plus 1.
+        object: f32,
+        /// Not used.
+        pad: f32,
+    }
+}
+
+/// Rows of four numbers that a struct takes in the table.
+pub const fn rows<T>() -> usize {
+    size_of::<T>() / 16
+}
+
+/// A function that reads a struct of numbers from the rows of the table that begin at `at`.
+pub fn loader<T: Shared>() -> String {
+    let fields: Vec<String> = (T::MEMBERS.iter())
+        .map(|m| {
+            let (row, component) = (m.offset / 16, m.offset % 16 / 4);
+            let components = match m.wgsl {
+                "vec3f" => "xyz",
+                _ => &"xyzw"[component..=component],
+            };
+            format!("table[at + {row}u].{components}")
+        })
+        .collect();
+    let (name, fields) = (T::NAME, fields.join(", "));
+    format!(
+        "fn load_{}(at: u32) -> {name} {{\n    return {name}({fields});\n}}\n",
+        name.to_lowercase()
+    )
+}
