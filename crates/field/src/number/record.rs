@@ -4,6 +4,7 @@
 //! and loops stay loops. [`Recorder::function`] takes out what some results need, as a [`Function`], which knows nothing of
 //! the language it is printed in.
 
+use super::dual::Dual;
 use super::expr::Expr;
 use super::real::Ends;
 use super::vector::{Vec3, v3};
@@ -100,7 +101,7 @@ pub enum Logic {
 pub enum Op {
     /// A number by its bits: finite, or infinite for "as large as can be".
     Literal(u32),
-    /// A number that is handed in: an argument, or a component of one (`p.x`).
+    /// A number that is handed in: an argument, or a component of one (`p.x`, `m[0].x`).
     Input(String),
     /// A parameter, counted from where the function's parameters begin.
     Param(u32),
@@ -213,6 +214,12 @@ pub enum Argument {
     Vec2,
     /// A vector; its inputs are `name.x`, `name.y` and `name.z`.
     Vec3,
+    /// A vector; its inputs are `name.x` to `name.w`. A number with its gradient is one: the value, then the derivatives
+    /// along x, y and z.
+    Vec4,
+    /// Three vectors of four; their inputs are `name[0].x` to `name[2].w`. A point with its derivatives is one: the numbers
+    /// x, y and z, each with its gradient.
+    Mat3x4,
     /// Where the function's parameters begin in the parameter array. Without one they begin at 0.
     Offset,
 }
@@ -244,8 +251,8 @@ pub enum RecordError {
     /// A literal that is not a number.
     #[error("function `{0}` holds a constant that is not a number (such as 0 / 0)")]
     NotANumber(String),
-    /// More results than a vector has components, or none.
-    #[error("function `{function}` has {count} results; it can have 1 to 4")]
+    /// As many results as neither a vector nor a point with its derivatives has.
+    #[error("function `{function}` has {count} results; it can have 1 to 4, or 12")]
     Results {
         /// The function.
         function: String,
@@ -254,7 +261,7 @@ pub enum RecordError {
     },
 }
 
-/// A recorded function: it takes arguments and gives one number, or a vector of two to four.
+/// A recorded function: it takes arguments and gives one number, a vector of two to four, or three vectors of four.
 #[derive(Clone, Debug)]
 pub struct Function {
     name: String,
@@ -344,7 +351,8 @@ impl Recorder {
         }))
     }
 
-    /// A number that is handed in: the name of a [`Argument::Number`], or a component of a vector (`p.x`).
+    /// A number that is handed in: the name of a [`Argument::Number`], or a component of a vector (`p.x`) or of one of three
+    /// (`m[0].x`).
     pub fn input(&self, name: &str) -> Expr<'_> {
         Expr::value(self, self.add(Op::Input(name.into())))
     }
@@ -353,6 +361,21 @@ impl Recorder {
     pub fn point(&self, name: &str) -> Vec3<Expr<'_>> {
         let axis = |c: &str| self.input(&format!("{name}.{c}"));
         v3(axis("x"), axis("y"), axis("z"))
+    }
+
+    /// The number with its gradient that is handed in as the argument `name`, an [`Argument::Vec4`].
+    pub fn dual(&self, name: &str) -> Dual<Expr<'_>> {
+        let component = |c: &str| self.input(&format!("{name}.{c}"));
+        Dual {
+            v: component("x"),
+            d: [component("y"), component("z"), component("w")],
+        }
+    }
+
+    /// The point with its derivatives that is handed in as the argument `name`, an [`Argument::Mat3x4`].
+    pub fn dual_point(&self, name: &str) -> Vec3<Dual<Expr<'_>>> {
+        let axis = |k: usize| self.dual(&format!("{name}[{k}]"));
+        v3(axis(0), axis(1), axis(2))
     }
 
     /// Parameter `at`, counted from where the function's parameters begin.
@@ -368,7 +391,7 @@ impl Recorder {
         results: &[Expr<'_>],
     ) -> Result<Function, RecordError> {
         check_names(name, arguments)?;
-        if !(1..=4).contains(&results.len()) {
+        if !matches!(results.len(), 1..=4 | 12) {
             return Err(RecordError::Results {
                 function: name.into(),
                 count: results.len(),
@@ -597,17 +620,23 @@ fn check_names(function: &str, arguments: &[(&str, Argument)]) -> Result<(), Rec
 
 /// Whether an input is an argument or a component of one.
 fn is_given(input: &str, arguments: &[(&str, Argument)]) -> bool {
-    let (base, component) = match input.split_once('.') {
-        Some((base, component)) => (base, Some(component)),
-        None => (input, None),
-    };
+    let (base, component) = input.split_at(input.find(['.', '[']).unwrap_or(input.len()));
     arguments.iter().any(|(name, kind)| {
         *name == base
             && match kind {
-                Argument::Number => component.is_none(),
-                Argument::Vec2 => component.is_some_and(|c| ["x", "y"].contains(&c)),
-                Argument::Vec3 => component.is_some_and(|c| ["x", "y", "z"].contains(&c)),
+                Argument::Number => component.is_empty(),
+                Argument::Vec2 => [".x", ".y"].contains(&component),
+                Argument::Vec3 => [".x", ".y", ".z"].contains(&component),
+                Argument::Vec4 => FOUR.contains(&component),
+                Argument::Mat3x4 => ["[0]", "[1]", "[2]"].iter().any(|column| {
+                    component
+                        .strip_prefix(column)
+                        .is_some_and(|c| FOUR.contains(&c))
+                }),
                 Argument::Offset => false,
             }
     })
 }
+
+/// The components of a vector of four.
+const FOUR: [&str; 4] = [".x", ".y", ".z", ".w"];

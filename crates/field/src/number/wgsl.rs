@@ -9,7 +9,7 @@ use super::record::{
 use super::wgsl_words::{PREDECLARED, RESERVED};
 use std::fmt::Write;
 
-/// The function as WGSL source: a function that returns `f32`, `vec2f`, `vec3f` or `vec4f`.
+/// The function as WGSL source: a function that returns `f32`, `vec2f`, `vec3f`, `vec4f` or `mat3x4f`.
 ///
 /// Infinite literals, which WGSL does not have, become the largest finite number.
 pub fn print(function: &Function) -> String {
@@ -37,7 +37,10 @@ pub fn print(function: &Function) -> String {
     let (kind, result) = match results.as_slice() {
         [one] => ("f32".to_owned(), one.clone()),
         many => {
-            let kind = format!("vec{}f", many.len());
+            let kind = match many.len() {
+                12 => "mat3x4f".to_owned(),
+                n => format!("vec{n}f"),
+            };
             (kind.clone(), format!("{kind}({})", many.join(", ")))
         }
     };
@@ -73,6 +76,8 @@ fn argument_type(kind: Argument) -> &'static str {
         Argument::Number => "f32",
         Argument::Vec2 => "vec2f",
         Argument::Vec3 => "vec3f",
+        Argument::Vec4 => "vec4f",
+        Argument::Mat3x4 => "mat3x4f",
         Argument::Offset => "u32",
     }
 }
@@ -106,10 +111,11 @@ impl Printer<'_> {
     fn name(&self, id: Id) -> String {
         match self.function.op(id) {
             Op::Literal(bits) => literal(*bits),
-            Op::Input(input) => match input.split_once('.') {
-                Some((base, component)) => format!("{}.{component}", identifier(base)),
-                None => identifier(input),
-            },
+            Op::Input(input) => {
+                let (base, component) =
+                    input.split_at(input.find(['.', '[']).unwrap_or(input.len()));
+                format!("{}{component}", identifier(base))
+            }
             Op::State(of, index) => state_name(of.number(), *index),
             _ => format!("v{}", id.number()),
         }

@@ -11,6 +11,7 @@ use std::marker::PhantomData;
 
 pub mod arithmetic;
 pub mod domain;
+pub mod recorded;
 
 /// A point in, a value out.
 pub trait Leaf: 'static {

@@ -1,7 +1,7 @@
 //! Recorded formulas: what the printed WGSL computes is what the formula computes.
 
 use crate::formulas::*;
-use crate::shader::Shader;
+use crate::shader::{Shader, Value};
 use crate::support::Formula;
 use crate::tree::{Tree, Unary, number, tree};
 use proptest::prelude::*;
@@ -365,6 +365,18 @@ fn mistakes_are_named() {
     assert!(error("f", &plane, &[p.x + p.y]).is_none());
     assert!(error("f", &plane, &[p.length()]).is_some_and(|e| e.contains("`p.z`")));
     assert!(error("f", &[("q", Argument::Vec3)], &[p.x]).is_some_and(|e| e.contains("`p.x`")));
+    for (argument, input) in [
+        (Argument::Vec4, "p"),
+        (Argument::Vec4, "p[0].x"),
+        (Argument::Mat3x4, "p.x"),
+        (Argument::Mat3x4, "p[3].x"),
+        (Argument::Mat3x4, "p[0]"),
+        (Argument::Number, "p.x"),
+    ] {
+        let result = recorder.input(input);
+        let error = error("f", &[("p", argument)], &[result]);
+        assert!(error.is_some_and(|e| e.contains(&format!("`{input}`"))));
+    }
     assert!(error("f", &SIGNATURE, &[]).is_some_and(|e| e.contains("0 results")));
     assert!(error("f", &SIGNATURE, &[p.x; 5]).is_some_and(|e| e.contains("5 results")));
 }
@@ -386,6 +398,36 @@ fn functions_take_what_their_arguments_say() {
     // without an offset parameters are counted from the array's beginning
     assert!(source.contains("params[7u]"), "{source}");
     Shader::new(&source);
+}
+
+#[test]
+fn numbers_and_points_come_and_go_with_their_derivatives() {
+    let recorder = Recorder::new();
+    let (d, p) = (recorder.dual("d"), recorder.dual_point("m"));
+    let signature = [("d", Argument::Vec4), ("m", Argument::Mat3x4)];
+    let results = [p.z, d, p.x * p.y].map(|n| [n.v, n.d[0], n.d[1], n.d[2]]);
+    let function = match recorder.function("f", &signature, &results.concat()) {
+        Ok(function) => wgsl::print(&function),
+        Err(e) => panic!("{e}"),
+    };
+    assert!(
+        function.starts_with("fn f(d: vec4f, m: mat3x4f) -> mat3x4f {"),
+        "{function}"
+    );
+    let columns = [
+        vec![2.0, 3.0, 4.0, 5.0],
+        vec![6.0, 7.0, 8.0, 9.0],
+        vec![0.0, 1.0, -1.0, 0.5],
+    ];
+    let arguments = vec![
+        Value::Vector(vec![1.0, -2.0, 3.0, -4.0]),
+        Value::Matrix(columns.to_vec()),
+    ];
+    let product = [12.0, 32.0, 40.0, 48.0];
+    assert_eq!(
+        Shader::new(&function).call_with("f", arguments, &[]),
+        [&[0.0, 1.0, -1.0, 0.5, 1.0, -2.0, 3.0, -4.0], &product[..]].concat()
+    );
 }
 
 #[test]

@@ -10,12 +10,15 @@ use naga::{
 /// A checked shader.
 pub(crate) struct Shader(Module);
 
+/// What an expression is.
 #[derive(Clone, Debug)]
-enum Value {
+pub(crate) enum Value {
     Float(f32),
     Count(u32),
     Bool(bool),
     Vector(Vec<f32>),
+    /// By columns.
+    Matrix(Vec<Vec<f32>>),
     Local(Handle<LocalVariable>),
     Params,
     Param(u32),
@@ -47,13 +50,19 @@ impl Shader {
 
     /// Calls a function of a point and the offset of its parameters.
     pub(crate) fn call(&self, name: &str, p: [f32; 3], at: u32, params: &[f32]) -> Vec<f32> {
+        let arguments = vec![Value::Vector(p.to_vec()), Value::Count(at)];
+        self.call_with(name, arguments, params)
+    }
+
+    /// Calls a function. A matrix comes back column by column.
+    pub(crate) fn call_with(&self, name: &str, arguments: Vec<Value>, params: &[f32]) -> Vec<f32> {
         let mut functions = self.0.functions.iter();
         let Some((_, function)) = functions.find(|(_, f)| f.name.as_deref() == Some(name)) else {
             panic!("no function {name}");
         };
         let mut frame = Frame {
             function,
-            arguments: vec![Value::Vector(p.to_vec()), Value::Count(at)],
+            arguments,
             params,
             locals: vec![Value::Bool(false); function.local_variables.len()],
             values: vec![None; function.expressions.len()],
@@ -115,6 +124,7 @@ impl Frame<'_> {
                     Flow::Return(match self.value(*value) {
                         Value::Float(x) => vec![x],
                         Value::Vector(v) => v,
+                        Value::Matrix(columns) => columns.concat(),
                         other => panic!("returns {other:?}"),
                     })
                 }
@@ -179,11 +189,20 @@ impl Frame<'_> {
             },
             Expression::AccessIndex { base, index } => match self.value(*base) {
                 Value::Vector(v) => Value::Float(v[*index as usize]),
+                Value::Matrix(columns) => Value::Vector(columns[*index as usize].clone()),
                 Value::Params => Value::Param(*index),
                 other => panic!("access {other:?}"),
             },
             Expression::Compose { components, .. } => {
-                Value::Vector(components.iter().map(|c| self.float(*c)).collect())
+                let parts: Vec<Value> = components.iter().map(|c| self.value(*c)).collect();
+                let columns = parts.iter().map(|part| match part {
+                    Value::Vector(v) => Some(v.clone()),
+                    _ => None,
+                });
+                match columns.collect() {
+                    Some(columns) => Value::Matrix(columns),
+                    None => Value::Vector(components.iter().map(|c| self.float(*c)).collect()),
+                }
             }
             Expression::Unary { op, expr } => match (op, self.value(*expr)) {
                 (UnaryOperator::Negate, Value::Float(x)) => Value::Float(-x),
