@@ -1,5 +1,6 @@
 //! How different two pictures are: by number, by structure, and to the eye.
 
+pub mod conform;
 mod flip;
 mod plane;
 mod ssim;

@@ -70,10 +70,7 @@ fn wrong_normals_are_refused() {
     let mut scene = scene();
     scene.settings.normals = zeroset_scene::settings::Normals::Exact;
     let off = differing(&scene, &stream(&scene), &faulty(&scene, 1.0, -1.0));
-    assert!(
-        off.iter().any(|(plane, _)| *plane == Plane::Normal),
-        "{off:?}"
-    );
+    assert!(off.iter().any(|d| d.plane == Plane::Normal), "{off:?}");
 }
 
 /// A compaction that loses one lane of 16, or mixes two up.
