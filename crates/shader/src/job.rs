@@ -72,9 +72,44 @@ impl Shaders {
     /// # Errors
     /// See [`RenderError`].
     pub fn prepare(&mut self, scene: &Scene) -> Result<Job, RenderError> {
+        let parts = Parts::new(scene, &self.limits, self.form)?;
+        if self.texts.len() > REMEMBERED {
+            self.texts.clear();
+        }
+        let (source, code) = (self.texts.entry(parts.key))
+            .or_insert_with_key(|key| {
+                let (text, code) = key.source();
+                (text.into(), code.into())
+            })
+            .clone();
+        Ok(Job {
+            source,
+            frame: parts.frame,
+            params: parts.params,
+            code,
+            table: parts.table,
+        })
+    }
+}
+
+/// A scene as a shader sees it.
+pub(crate) struct Parts {
+    /// What the text depends on.
+    pub(crate) key: Key,
+    pub(crate) frame: Frame,
+    pub(crate) params: Vec<f32>,
+    pub(crate) table: Vec<[f32; 4]>,
+}
+
+impl Parts {
+    pub(crate) fn new(
+        scene: &Scene,
+        limits: &Limits,
+        form: FieldForm,
+    ) -> Result<Parts, RenderError> {
         let (program, region) = match scene.field()? {
             Some(field) => {
-                let program = Program::compile(&field, &self.limits)?;
+                let program = Program::compile(&field, limits)?;
                 let region = Region::new(&program.bounds());
                 (program, region)
             }
@@ -82,34 +117,15 @@ impl Shaders {
                 // no ray goes into an empty region: the program stands for nothing
                 let sphere = &catalogue().primitives[0];
                 let field = Field::primitive(sphere, sphere.info.defaults())?;
-                (
-                    Program::compile(&field, &self.limits)?,
-                    Region::new(&Aabb::EMPTY),
-                )
+                (Program::compile(&field, limits)?, Region::new(&Aabb::EMPTY))
             }
         };
-        let key = Key::new(scene, &program, self.form);
-        if self.texts.len() > REMEMBERED {
-            self.texts.clear();
-        }
-        let (source, code) = (self.texts.entry(key))
-            .or_insert_with_key(|key| {
-                let (text, code) = key.source();
-                (text.into(), code.into())
-            })
-            .clone();
-        let (table, frame) = tables(
-            scene,
-            Frame {
-                hit_selection: u32::from(scene.settings.hit_selection),
-                ..frame(scene, &region)
-            },
-        );
-        Ok(Job {
-            source,
+        let key = Key::new(scene, &program, form);
+        let (table, frame) = tables(scene, frame(scene, &region));
+        Ok(Parts {
+            key,
             frame,
             params: program.params().to_vec(),
-            code,
             table,
         })
     }
@@ -196,6 +212,7 @@ fn frame(scene: &Scene, region: &Region) -> Frame {
         far: view.far,
         region_min: region.min,
         region_max: region.max,
+        hit_selection: u32::from(settings.hit_selection),
         max_steps: settings.max_steps.max(1),
         pixel: [view.pixel.slope, view.pixel.constant],
         threshold: [view.threshold.slope, view.threshold.constant],

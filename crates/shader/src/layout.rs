@@ -264,8 +264,8 @@ shared! {
         object: f32,
         /// Evaluations of the primary ray.
         steps: f32,
-        /// Not used.
-        pad: f32,
+        /// Where in its pixel it went through: two fractions of 65,535.
+        jitter: u32,
     }
 
     /// Filtered sums of a pixel.

@@ -4,6 +4,8 @@
 //! twin of the CPU renderer) and structs that are declared once, in [`layout`].
 
 pub mod entry;
+pub mod export;
+mod field;
 pub mod job;
 pub mod layout;
 mod source;

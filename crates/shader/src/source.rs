@@ -1,8 +1,17 @@
 //! The text of a shader module: the recorded field and the stages that a scene needs.
 
+use crate::entry::Binding;
+use crate::field::FieldSource;
 use crate::job::{FieldForm, LONGEST_COMPILED};
+use crate::layout::{
+    Frame, Light, LightSum, Material, Occluder, Sample, Shared, SurfaceSum, Tile, loader, rows,
+};
 use std::collections::BTreeSet;
-use std::sync::Arc;
+use std::fmt::Write;
+use std::sync::{Arc, LazyLock};
+use zeroset_field::catalogue::noise::gradient_noise;
+use zeroset_field::number::record::{Argument, Recorder};
+use zeroset_field::number::wgsl;
 use zeroset_field::program::{Program, Structure};
 use zeroset_scene::material::Pattern;
 use zeroset_scene::scene::Scene;
@@ -24,16 +33,11 @@ pub(crate) struct Key {
 impl Key {
     pub(crate) fn new(scene: &Scene, program: &Program, form: FieldForm) -> Key {
         let structure = program.shared_structure();
-        let length = structure.values.instructions.len() + structure.marks.instructions.len();
         let methods = (scene.objects.iter())
             .filter_map(|o| o.occlusion.as_ref())
             .chain([&scene.settings.occlusion]);
-        Key {
-            interpreted: match form {
-                FieldForm::Auto => length > LONGEST_COMPILED,
-                FieldForm::Compiled => false,
-                FieldForm::Interpreted => true,
-            },
+        let mut key = Key {
+            interpreted: form == FieldForm::Interpreted,
             structure,
             march: march_kind(&scene.settings.march),
             normals: scene.settings.normals,
@@ -47,14 +51,263 @@ impl Key {
             patterns: (scene.materials.iter())
                 .map(|m| pattern_kind(&m.pattern))
                 .collect(),
+        };
+        if form == FieldForm::Auto {
+            key.interpreted = key.length() > LONGEST_COMPILED;
         }
+        key
     }
 
-    /// The text, and the instructions of a field that is data.
+    /// Instructions for values and marks together.
+    pub(crate) fn length(&self) -> usize {
+        self.structure.values.instructions.len() + self.structure.marks.instructions.len()
+    }
+
+    /// The text of the module that a GPU renders with, and the instructions of a field that is data.
     pub(crate) fn source(&self) -> (String, Vec<u32>) {
-        (String::new(), vec![0])
+        let mut text = String::new();
+        for declaration in [
+            Frame::declaration(),
+            Tile::declaration(),
+            LightSum::declaration(),
+            SurfaceSum::declaration(),
+        ] {
+            text += &declaration;
+        }
+        for binding in Binding::ALL {
+            text += &binding.declaration();
+        }
+        let (picture, code) = self.picture();
+        text += &picture;
+        for stage in [
+            include_str!("stage/count_main.wgsl"),
+            include_str!("stage/cone.wgsl"),
+            include_str!("stage/cone_main.wgsl"),
+            include_str!("stage/trace_main.wgsl"),
+            include_str!("stage/film.wgsl"),
+        ] {
+            text.push('\n');
+            text += stage;
+        }
+        (text, code)
+    }
+
+    /// What turns a ray into a sample: everything but buffers and entry points. It uses `frame`, `params`, `table` and, for a
+    /// field that is data, `code`.
+    pub(crate) fn picture(&self) -> (String, Vec<u32>) {
+        let field = if self.interpreted {
+            FieldSource::interpreted(&self.structure)
+        } else {
+            FieldSource::compiled(&self.structure)
+        };
+        let mut text = String::new();
+        for declaration in [
+            Light::declaration(),
+            Occluder::declaration(),
+            Material::declaration(),
+            Sample::declaration(),
+        ] {
+            text += &declaration;
+        }
+        for (name, rows) in [
+            ("LIGHT", rows::<Light>()),
+            ("OCCLUDER", rows::<Occluder>()),
+            ("MATERIAL", rows::<Material>()),
+        ] {
+            // writing to a string cannot fail
+            let _ = writeln!(text, "const {name}_ROWS: u32 = {rows}u;");
+        }
+        text += &loader::<Light>();
+        text += &loader::<Occluder>();
+        text += &loader::<Material>();
+        text += &field.text;
+        for stage in self.stages() {
+            text.push('\n');
+            text += stage;
+        }
+        text += &self.pattern_colour();
+        text += &self.occlusion();
+        (text, field.code)
+    }
+
+    /// The stages that the methods of this scene need.
+    fn stages(&self) -> Vec<&'static str> {
+        let mut stages = vec![
+            include_str!("stage/count.wgsl"),
+            include_str!("stage/camera.wgsl"),
+            include_str!("stage/sampling.wgsl"),
+            include_str!("stage/surface.wgsl"),
+            include_str!("stage/material.wgsl"),
+            include_str!("stage/ao.wgsl"),
+            include_str!("stage/shade.wgsl"),
+            include_str!("stage/trace.wgsl"),
+        ];
+        if self.march != MARCH_FIXED {
+            stages.push(include_str!("stage/march.wgsl"));
+        }
+        stages.push(match self.march {
+            MARCH_FIXED => include_str!("stage/march_fixed.wgsl"),
+            1 => include_str!("stage/march_sphere.wgsl"),
+            2 => include_str!("stage/march_relaxed.wgsl"),
+            3 => include_str!("stage/march_enhanced.wgsl"),
+            _ => include_str!("stage/march_auto.wgsl"),
+        });
+        if self.normals != Normals::Exact {
+            stages.push(include_str!("stage/normal.wgsl"));
+        }
+        match self.normals {
+            Normals::Exact => stages.push(include_str!("stage/normal_exact.wgsl")),
+            Normals::Tetrahedron => stages.push(include_str!("stage/normal_tetrahedron.wgsl")),
+            Normals::Central => stages.push("const NEIGHBOUR_AXES: f32 = 1.0;\n"),
+            Normals::Samples18 => stages.push("const NEIGHBOUR_AXES: f32 = 2.0;\n"),
+            Normals::Samples26 => stages.push("const NEIGHBOUR_AXES: f32 = 3.0;\n"),
+        }
+        if !matches!(self.normals, Normals::Exact | Normals::Tetrahedron) {
+            stages.push(include_str!("stage/normal_neighbours.wgsl"));
+        }
+        let shadows = self.shadows.iter().any(|&kind| kind != 0);
+        if shadows || self.occlusion.iter().any(|kind| HEMISPHERES.contains(kind)) {
+            stages.push(include_str!("stage/beam.wgsl"));
+        }
+        stages.push(if shadows {
+            include_str!("stage/shadow.wgsl")
+        } else {
+            include_str!("stage/shadow_none.wgsl")
+        });
+        stages.push(match self.shading {
+            Shading::Phong => include_str!("stage/shade_phong.wgsl"),
+            Shading::Lambert => include_str!("stage/shade_lambert.wgsl"),
+            Shading::LambertLegacy => include_str!("stage/shade_legacy.wgsl"),
+        });
+        stages.extend(
+            self.occlusion
+                .iter()
+                .filter_map(|&kind| Some(OCCLUSION[kind as usize]?.0)),
+        );
+        stages.extend(
+            self.patterns
+                .iter()
+                .filter_map(|&kind| Some(PATTERNS[kind as usize]?.1)),
+        );
+        if self.patterns.contains(&PATTERN_NOISE) {
+            stages.push(noise());
+        }
+        stages
+    }
+
+    /// The function that tells patterns apart.
+    fn pattern_colour(&self) -> String {
+        let cases = self.patterns.iter().filter_map(|&kind| {
+            let (name, _) = PATTERNS[kind as usize]?;
+            Some(format!(
+                "        case {kind}u: {{\n            return {name}(m, at);\n        }}\n"
+            ))
+        });
+        switch(
+            "fn pattern_colour(m: Material, at: Place) -> vec3f",
+            "m.kind",
+            cases.collect(),
+            "m.a",
+        )
+    }
+
+    /// The function that tells occlusion methods apart.
+    fn occlusion(&self) -> String {
+        let cases = self.occlusion.iter().filter_map(|&kind| {
+            let (_, call) = OCCLUSION[kind as usize]?;
+            Some(format!(
+                "        case {kind}u: {{\n            return {call};\n        }}\n"
+            ))
+        });
+        switch(
+            "fn occlusion(at: Surface, how: Occluder, key: vec2u) -> Openness",
+            "how.kind",
+            cases.collect(),
+            "Openness(1.0, at.normal)",
+        )
     }
 }
+
+/// A function that returns `otherwise` but in some cases.
+fn switch(signature: &str, kind: &str, cases: String, otherwise: &str) -> String {
+    if cases.is_empty() {
+        return format!("\n{signature} {{\n    return {otherwise};\n}}\n");
+    }
+    format!(
+        "\n{signature} {{\n    switch (u32({kind})) {{\n{cases}        default: {{\n            return {otherwise};\n        }}\n    }}\n}}\n"
+    )
+}
+
+/// The noise of procedural materials, recorded from the field's.
+fn noise() -> &'static str {
+    static NOISE: LazyLock<String> = LazyLock::new(|| {
+        let recorder = Recorder::new();
+        let value = gradient_noise(recorder.point("p"));
+        let function = recorder
+            .function("gradient_noise", &[("p", Argument::Vec3)], &[value])
+            .expect("a formula of the point alone has no unknown input");
+        wgsl::print(&function)
+    });
+    &NOISE
+}
+
+const MARCH_FIXED: u32 = 0;
+const PATTERN_NOISE: u32 = 3;
+/// Occlusion methods that send rays.
+const HEMISPHERES: [u32; 2] = [6, 7];
+
+/// Stage and call of every occlusion method, by its number.
+const OCCLUSION: [Option<(&str, &str)>; 8] = [
+    None,
+    Some((
+        include_str!("stage/ao_quilez.wgsl"),
+        "Openness(ao_quilez(at, how), at.normal)",
+    )),
+    Some((
+        include_str!("stage/ao_bent.wgsl"),
+        "Openness(ao_bent(at, how), at.normal)",
+    )),
+    Some((
+        include_str!("stage/ao_evans.wgsl"),
+        "Openness(ao_evans(at, how), at.normal)",
+    )),
+    Some((
+        include_str!("stage/ao_upward.wgsl"),
+        "Openness(ao_upward(at, how), at.normal)",
+    )),
+    Some((include_str!("stage/ao_cones.wgsl"), "ao_cones(at, how)")),
+    Some((
+        include_str!("stage/ao_hemisphere.wgsl"),
+        "Openness(ao_hemisphere(at, how, key), at.normal)",
+    )),
+    Some((
+        include_str!("stage/ao_obscurance.wgsl"),
+        "Openness(ao_obscurance(at, how, key), at.normal)",
+    )),
+];
+
+/// Function and stage of every pattern that is more than one colour, by its number.
+const PATTERNS: [Option<(&str, &str)>; 7] = [
+    None,
+    Some((
+        "pattern_checker",
+        include_str!("stage/pattern_checker.wgsl"),
+    )),
+    Some((
+        "pattern_stripes",
+        include_str!("stage/pattern_stripes.wgsl"),
+    )),
+    Some(("pattern_noise", include_str!("stage/pattern_noise.wgsl"))),
+    Some((
+        "pattern_gradient",
+        include_str!("stage/pattern_gradient.wgsl"),
+    )),
+    Some((
+        "pattern_triplanar",
+        include_str!("stage/pattern_triplanar.wgsl"),
+    )),
+    Some(("pattern_orbit", include_str!("stage/pattern_orbit.wgsl"))),
+];
 
 /// Number of a marcher in shaders.
 pub(crate) fn march_kind(march: &March) -> u32 {

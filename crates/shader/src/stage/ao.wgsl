@@ -1,0 +1,15 @@
+// Ambient occlusion: how much of the sky reaches a hit. Every method of the papers, and cones as the default.
+
+/// Ambient visibility and the direction that most of the sky is seen in.
+struct Openness {
+    open: f32,
+    bent: vec3f,
+}
+
+const UP: vec3f = vec3f(0.0, 1.0, 0.0);
+
+/// The field at a place, from the side of a surface.
+fn around(at: Surface, p: vec3f) -> f32 {
+    counted[COUNT_OCCLUSION] += 1u;
+    return at.side * field(p);
+}

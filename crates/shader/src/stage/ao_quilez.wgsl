@@ -1,0 +1,12 @@
+// Samples along the normal with halving weights (Tomczak 2012, algorithm 3.4 with the sum of equation 3.31).
+
+fn ao_quilez(at: Surface, how: Occluder) -> f32 {
+    var sum = 0.0;
+    var weight = 1.0;
+    for (var k = 1u; k <= u32(how.count); k++) {
+        let far = f32(k) * how.reach;
+        weight *= 0.5;
+        sum += weight * (far - around(at, at.point + at.normal * far));
+    }
+    return 1.0 - clamp(how.scale * sum, 0.0, 1.0);
+}

@@ -1,0 +1,87 @@
+// How much of something far reaches a surface: shadows, and the rays of occlusion that is sampled.
+//
+// A ray needs samples only where they can darken it. Between two samples z apart with the radii r and f the field is nowhere
+// below (r + f - z) / 2; where even that is no penumbra, the step was free to be longer than r. The step that just meets
+// this, for a field that goes on with the slope m, is 2 (r - w t) / (1 - m + 2 w), with w the width of the penumbra that
+// still matters. For hard shadows w is 0.
+
+/// A ray's first sample is this many offsets from its origin.
+const BEAM_FIRST: f32 = 2.0;
+/// A value of the field below this many offsets stops a ray that has no penumbra.
+const BEAM_STOP: f32 = 0.125;
+/// Less light than this counts as dark.
+const BEAM_DARK: f32 = 1.0 / 256.0;
+/// Smoothing of the slope along a ray.
+const BEAM_SMOOTHING: f32 = 0.3;
+/// Share of the step that would just do.
+const BEAM_SHARE: f32 = 0.95;
+/// Steeper slopes count as this.
+const BEAM_STEEPEST: f32 = 0.98;
+
+/// What a beam found.
+struct Beam {
+    /// What is left of the light: 0 or 1 for a hard one.
+    light: f32,
+    /// How far it came.
+    t: f32,
+    samples: u32,
+}
+
+/// Looks from a surface along `to`, at most as far as `distance`. `kind` is that of a shadow: 1 hard, 2 soft (Tomczak 2012,
+/// algorithm 3.3), 3 soft with the closest place between two samples (Aaltonen 2018).
+fn look(at: Surface, to: vec3f, distance: f32, kind: u32, sharpness: f32) -> Beam {
+    let origin = at.point + at.normal * at.offset;
+    let hard = kind == 1u;
+    let width = select(1.0 / max(sharpness, 1e-20), 0.0, hard);
+    let end = min(min(leave(Ray(origin, to), width, at.offset), distance), frame.far);
+    var t = min(at.offset * BEAM_FIRST, end);
+    var z = 0.0;
+    var r = 0.0;
+    var m = dot(at.normal, to);
+    var light = 1.0;
+    var steps = 0u;
+    while (steps < frame.max_steps) {
+        let there = t + z;
+        let f = at.side * field(origin + to * there);
+        steps += 1u;
+        let wide = light * width;
+        if (z > r && 0.5 * (r + f - z) < wide * there) {
+            // something between the samples can matter: back to the radius itself, which is sure to be kept
+            m = -1.0;
+            z = r;
+        } else {
+            if (z > 0.0) {
+                m = mix(m, clamp((f - r) / max(z, 1e-20), -1.0, 1.0), BEAM_SMOOTHING);
+            }
+            m = min(m, BEAM_STEEPEST);
+            if (hard) {
+                if (f < at.offset * BEAM_STOP) {
+                    return Beam(0.0, there, steps);
+                }
+            } else {
+                light = min(light, penumbra(f, z, r, there, kind) * sharpness);
+                if (light < BEAM_DARK) {
+                    return Beam(0.0, there, steps);
+                }
+            }
+            t = there;
+            r = f;
+            let narrow = light * width;
+            z = max(r, (r - narrow * t) * 2.0 * BEAM_SHARE / (1.0 - m + 2.0 * narrow));
+        }
+        if (!(t + r < end)) {
+            break;
+        }
+        z = min(z, end - t);
+    }
+    return Beam(light, t, steps);
+}
+
+/// How wide the way of a ray is for its length, after a sample `f` at `t`, a step of `z` behind one of radius `r`.
+fn penumbra(f: f32, z: f32, r: f32, t: f32, kind: u32) -> f32 {
+    if (kind == 3u && z > 0.0 && z <= r * 1.000001 && f < r && f >= 0.0) {
+        let before = max((z * z + f * f - r * r) / max(2.0 * z, 1e-20), 0.0);
+        return sqrt(max(f * f - before * before, 0.0)) / max(t - before, 1e-20);
+    }
+    return f / max(t, 1e-20);
+}

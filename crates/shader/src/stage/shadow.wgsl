@@ -1,0 +1,14 @@
+// Shadows: how much of a light reaches a hit.
+
+/// How much of a light reaches a surface that it is in the direction `to` of: 0 where the surface faces away.
+fn shadow(at: Surface, light: Light, to: vec3f, distance: f32) -> f32 {
+    if (!(dot(at.normal, to) > 0.0)) {
+        return 0.0;
+    }
+    if (light.shadow == 0.0) {
+        return 1.0;
+    }
+    let beam = look(at, to, distance, u32(light.shadow), light.sharpness);
+    counted[COUNT_SHADOW] += beam.samples;
+    return beam.light;
+}

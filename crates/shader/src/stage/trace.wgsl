@@ -1,0 +1,83 @@
+// One ray, from the camera to its colour.
+
+fn substance_of(number: f32, at: Place) -> Substance {
+    let known = number >= 0.0 && number < f32(frame.materials);
+    let which = select(frame.materials, u32(max(number, 0.0)), known);
+    let m = load_material(frame.material_rows + which * MATERIAL_ROWS);
+    return Substance(pattern_colour(m, at), m.emission, m.specular, m.metallic, m.roughness, m.shininess);
+}
+
+fn blend(a: Substance, b: Substance, share: f32) -> Substance {
+    return Substance(
+        mix(a.albedo, b.albedo, share),
+        mix(a.emission, b.emission, share),
+        mix(a.specular, b.specular, share),
+        mix(a.metallic, b.metallic, share),
+        mix(a.roughness, b.roughness, share),
+        mix(a.shininess, b.shininess, share),
+    );
+}
+
+/// What a ray found that hit nothing.
+fn background(ray: Ray, steps: u32) -> Sample {
+    let colour = sky_colour(ray.direction.y);
+    return Sample(colour, -1.0, vec3f(0.0), 0.0, vec3f(0.0), 1.0, 1.0, 0.0, f32(steps), 0u);
+}
+
+/// Follows ray number `index` of a pixel. `span` is the part of it that may hold the surface.
+fn trace_ray(pixel: vec2u, index: u32, ray: Ray, span: vec3f) -> Sample {
+    let start = max(max(enter(ray, frame.threshold.x, frame.threshold.y), frame.near), span.x);
+    let end = min(min(leave(ray, frame.threshold.x, frame.threshold.y), frame.far), span.z);
+    if (!(start < end)) {
+        return background(ray, 0u);
+    }
+    let found = march(ray, start, end, span.y);
+    counted[COUNT_MARCH] += found.steps;
+    if (!found.hit) {
+        return background(ray, found.steps);
+    }
+    var t = found.t;
+    var residual = found.f;
+    // where the footprint of the pixel meets the surface (Keinert 2014, 3.4, equations 2 and 3); the last turn finds what is
+    // left there
+    for (var k = 0u; k <= frame.placing && frame.placing > 0u; k++) {
+        residual = found.side * field(ray.origin + ray.direction * t);
+        counted[COUNT_MARCH] += 1u;
+        if (k < frame.placing) {
+            let wanted = threshold(t);
+            t = max(t + clamp(residual - wanted, -2.0 * wanted, 2.0 * wanted), 0.0);
+        }
+    }
+    let point = ray.origin + ray.direction * t;
+    let pixel_here = pixel_width(t);
+    let uphill = gradient(point, pixel_here) * found.side;
+    let steepness = length(uphill);
+    let normal = select(-ray.direction, uphill / steepness, steepness > 0.0 && steepness < FAR);
+    let at = Surface(point, normal, found.side, 2.0 * max(abs(found.f), threshold(t)), ray.direction);
+    let marks = field_marks(point);
+    counted[COUNT_MATERIAL] += 1u;
+    let key = scramble(pixel, frame.seed ^ ((index + 1u) * 0x9e3779b9u));
+    let object = select(frame.objects, u32(max(marks.object, 0.0)), marks.object >= 0.0 && marks.object < f32(frame.objects));
+    let seen = occlusion(at, load_occluder(frame.object_rows + object * OCCLUDER_ROWS), key);
+    let width = pixel_here / sqrt(f32(max(frame.samples, 1u)));
+    let place = place_on(point, normal, ray.direction, width, marks.orbit);
+    var what = substance_of(marks.first, place);
+    if (marks.share > 0.0) {
+        what = blend(what, substance_of(marks.second, place), marks.share);
+    }
+    let light = arriving(at, what.shininess);
+    let colour = surface_colour(what, light, at, seen);
+    counted[COUNT_HITS] += 1u;
+    return Sample(
+        colour,
+        t,
+        normal,
+        abs(residual),
+        what.albedo,
+        seen.open,
+        light.lit / max(light.share, 1e-20),
+        marks.object + 1.0,
+        f32(found.steps),
+        0u,
+    );
+}

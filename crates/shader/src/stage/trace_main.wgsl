@@ -1,0 +1,18 @@
+// The entry point that sends one ray through every pixel of a tile.
+
+@compute @workgroup_size(8, 8, 1)
+fn trace(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) local: u32) {
+    if (id.x < tile.size.x && id.y < tile.size.y) {
+        let pixel = tile.corner + id.xy;
+        var span = vec3f(0.0, -1.0, FAR);
+        if (frame.prepass != 0u) {
+            span = cones[cone_of(pixel)].xyz;
+        }
+        let within = jitter(pixel, tile.index);
+        var found = trace_ray(pixel, tile.index, camera_ray(vec2f(pixel) + within), span);
+        found.jitter = pack2x16unorm(within);
+        samples[(pixel.y - frame.band.x) * frame.size.x + pixel.x] = found;
+        counted[COUNT_RAYS] += 1u;
+    }
+    count_up(local);
+}

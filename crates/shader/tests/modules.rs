@@ -1,0 +1,312 @@
+//! Every shader module is valid, whatever the methods, and reads what the CPU writes. No GPU is needed.
+
+use naga::front::wgsl;
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use zeroset_scene::load::{Language, Options, load, load_text};
+use zeroset_scene::material::{Image, Pattern};
+use zeroset_scene::scene::Scene;
+use zeroset_scene::settings::{Antialias, Filter, March, Normals, Occlusion, Shading, Shadow};
+use zeroset_shader::entry::{Binding, ENTRIES};
+use zeroset_shader::layout::{
+    Frame, Light, LightSum, Material, Occluder, Sample, Shared, SurfaceSum, Tile,
+};
+use zeroset_shader::{FieldForm, Shaders, export};
+
+fn validate(source: &str, what: &str) -> (naga::Module, ModuleInfo) {
+    let module =
+        wgsl::parse_str(source).unwrap_or_else(|e| panic!("{what}: {}", e.emit_to_string(source)));
+    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+        .validate(&module)
+        .unwrap_or_else(|e| panic!("{what}: {}", e.emit_to_string(source)));
+    (module, info)
+}
+
+fn check(scene: &Scene, form: FieldForm, what: &str) -> String {
+    let job = Shaders::new(form)
+        .prepare(scene)
+        .unwrap_or_else(|e| panic!("{what}: {e}"));
+    validate(&job.source, what);
+    job.source.to_string()
+}
+
+fn scene(text: &str) -> Scene {
+    load_text(
+        "test.star",
+        text,
+        Language::Starlark,
+        None,
+        &Options::default(),
+    )
+    .unwrap_or_else(|e| panic!("{}", e.report))
+    .scene
+}
+
+/// Every scene that comes along.
+fn scenes() -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes")];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).expect("the scenes").flatten() {
+            let path = entry.path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "star") {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    assert!(found.len() > 20);
+    found
+}
+
+#[test]
+fn every_scene_has_a_valid_shader() {
+    for path in scenes() {
+        let Ok(loaded) = load(&path, &Options::default()) else {
+            // a part of other scenes, which shows nothing itself
+            continue;
+        };
+        for form in [FieldForm::Compiled, FieldForm::Interpreted] {
+            check(&loaded.scene, form, &format!("{} {form:?}", path.display()));
+        }
+    }
+}
+
+const PATTERNS: &str = r#"
+show(sphere(1), material(color = "red"))
+show(box(1).move(x = 2), material(color = checker("white", "black", size = 0.2)))
+show(box(1).move(x = 4), material(color = stripes("white", "black", direction = "z", size = 0.2)))
+show(box(1).move(x = 6), material(color = noise("white", "black", size = 0.2)))
+show(box(1).move(x = 8), material(color = gradient("white", "black", start = (0, 0, 0), end = (0, 1, 0))))
+show(mandelbulb().move(x = 12), material(color = orbit(center = "red", x = "white", y = "black", z = "blue")))
+"#;
+
+#[test]
+fn every_method_has_a_valid_shader() {
+    let base = scene("show(sphere(1))");
+    let marchers = [
+        March::Fixed { step: 0.1 },
+        March::Sphere,
+        March::Relaxed { omega: 1.6 },
+        March::Enhanced { share: 0.9 },
+        March::Auto { beta: 0.3 },
+    ];
+    let normals = [
+        Normals::Tetrahedron,
+        Normals::Central,
+        Normals::Samples18,
+        Normals::Samples26,
+        Normals::Exact,
+    ];
+    let shadings = [Shading::Phong, Shading::Lambert, Shading::LambertLegacy];
+    let shadows = [
+        Shadow::None,
+        Shadow::Hard,
+        Shadow::Soft { sharpness: 8.0 },
+        Shadow::SoftClosest { sharpness: 8.0 },
+    ];
+    let (step, scale, bend, reach) = (0.1, 1.0, 0.1, 1.0);
+    let occlusions = [
+        Occlusion::None,
+        Occlusion::Quilez {
+            steps: 5,
+            step,
+            scale,
+        },
+        Occlusion::Bent {
+            steps: 5,
+            step,
+            scale,
+            bend,
+        },
+        Occlusion::Evans { scale, step, bend },
+        Occlusion::Upward { scale },
+        Occlusion::Cones { reach, steps: 5 },
+        Occlusion::Hemisphere { rays: 4, reach },
+        Occlusion::Obscurance {
+            rays: 4,
+            reach,
+            tau: 1.0,
+        },
+    ];
+    let mut texts = BTreeMap::new();
+    let mut count = 0;
+    for (i, (march, occlusion)) in (marchers
+        .iter()
+        .flat_map(|m| occlusions.iter().map(move |o| (m, o))))
+    .enumerate()
+    {
+        let mut scene = base.clone();
+        scene.settings.march = *march;
+        scene.settings.occlusion = *occlusion;
+        scene.settings.normals = normals[i % normals.len()];
+        scene.settings.shading = shadings[i % shadings.len()];
+        for light in &mut scene.lights {
+            light.shadow = shadows[i % shadows.len()];
+        }
+        texts.insert(
+            check(
+                &scene,
+                FieldForm::Compiled,
+                &format!("{:?}", scene.settings),
+            ),
+            i,
+        );
+        count += 1;
+    }
+    assert_eq!(texts.len(), count, "two methods have the same shader");
+}
+
+#[test]
+fn every_pattern_has_a_valid_shader() {
+    let mut scene = scene(PATTERNS);
+    scene.materials[0].pattern = Pattern::Triplanar {
+        image: Arc::new(Image {
+            path: "one.png".into(),
+            width: 1,
+            height: 1,
+            pixels: vec![glam::Vec3::ONE],
+        }),
+        size: 1.0,
+        sharpness: 4.0,
+    };
+    let text = check(&scene, FieldForm::Compiled, "patterns");
+    for kind in [
+        "checker",
+        "stripes",
+        "noise",
+        "gradient",
+        "triplanar",
+        "orbit",
+    ] {
+        assert!(
+            text.contains(&format!("return pattern_{kind}(m, at)")),
+            "{kind}"
+        );
+    }
+}
+
+#[test]
+fn numbers_leave_the_shader_as_it_is() {
+    let mut shaders = Shaders::new(FieldForm::Auto);
+    let mut of = |text: &str, edit: fn(&mut Scene)| {
+        let mut scene = scene(text);
+        edit(&mut scene);
+        shaders.prepare(&scene).expect("a job").source
+    };
+    let first = of("show(sphere(1) | box((1, 2, 3)).move(x = 1))", |_| {});
+    let other = of("show(sphere(2) | box((3, 2, 1)).move(y = 2))", |s| {
+        s.settings.size = [64, 32];
+        s.settings.march = March::Auto { beta: 0.5 };
+        s.settings.prepass = false;
+        s.settings.antialias = Antialias::Supersample {
+            samples: 9,
+            filter: Filter::Tent,
+        };
+    });
+    assert_eq!(first, other);
+    assert_ne!(
+        first,
+        of("show(sphere(1) | torus(radius = 1, tube = 0.2))", |_| {})
+    );
+}
+
+/// The layout that naga gives a struct of the shader is that of the CPU's.
+fn same_layout<T: Shared>(module: &naga::Module) {
+    let found = module.types.iter().find_map(|(_, ty)| match &ty.inner {
+        naga::TypeInner::Struct { members, span } if ty.name.as_deref() == Some(T::NAME) => {
+            Some((members, *span))
+        }
+        _ => None,
+    });
+    let (members, span) = found.unwrap_or_else(|| panic!("no struct {}", T::NAME));
+    assert_eq!(members.len(), T::MEMBERS.len());
+    for (member, ours) in members.iter().zip(T::MEMBERS) {
+        assert_eq!(member.name.as_deref(), Some(ours.name));
+        assert_eq!(
+            member.offset as usize,
+            ours.offset,
+            "{}.{}",
+            T::NAME,
+            ours.name
+        );
+    }
+    assert_eq!(span as usize, size_of::<T>(), "size of {}", T::NAME);
+}
+
+#[test]
+fn layouts_are_the_shaders() {
+    let job = Shaders::default()
+        .prepare(&scene("show(sphere(1))"))
+        .expect("a job");
+    let (module, _) = validate(&job.source, "sphere");
+    same_layout::<Frame>(&module);
+    same_layout::<Tile>(&module);
+    same_layout::<Light>(&module);
+    same_layout::<Occluder>(&module);
+    same_layout::<Material>(&module);
+    same_layout::<Sample>(&module);
+    same_layout::<LightSum>(&module);
+    same_layout::<SurfaceSum>(&module);
+}
+
+#[test]
+fn entry_points_use_the_buffers_that_they_state() {
+    let scene = scene("show(sphere(1))");
+    for form in [FieldForm::Compiled, FieldForm::Interpreted] {
+        let job = Shaders::new(form).prepare(&scene).expect("a job");
+        let (module, info) = validate(&job.source, "sphere");
+        assert_eq!(module.entry_points.len(), ENTRIES.len());
+        for (k, point) in module.entry_points.iter().enumerate() {
+            let entry = ENTRIES
+                .iter()
+                .find(|e| e.name == point.name)
+                .expect("a known entry point");
+            let uses = info.get_entry_point(k);
+            for (handle, variable) in module.global_variables.iter() {
+                if let Some(binding) = &variable.binding
+                    && !uses[handle].is_empty()
+                {
+                    let which = Binding::ALL[binding.binding as usize];
+                    assert!(
+                        entry.bindings.contains(&which),
+                        "{} uses {which:?}",
+                        entry.name
+                    );
+                }
+            }
+            let storage = entry
+                .bindings
+                .iter()
+                .filter(|b| !matches!(b, Binding::Frame | Binding::Tile))
+                .count();
+            assert!(storage <= 8, "{} has {storage} storage buffers", entry.name);
+        }
+    }
+}
+
+#[test]
+fn exported_files_are_valid() {
+    for path in scenes() {
+        let Ok(loaded) = load(&path, &Options::default()) else {
+            continue;
+        };
+        let what = path.display().to_string();
+        let text = export::wgsl(&loaded.scene).unwrap_or_else(|e| panic!("{what}: {e}"));
+        validate(&text, &what);
+        let text = export::glsl(&loaded.scene).unwrap_or_else(|e| panic!("{what}: {e}"));
+        // what Shadertoy puts around a file
+        let around = format!(
+            "#version 450\nconst vec3 iResolution = vec3(64.0, 48.0, 1.0);\nconst vec4 iMouse = vec4(1.0);\nlayout(location = 0) out vec4 colour_out;\n{text}\n\
+             void main() {{ mainImage(colour_out, gl_FragCoord.xy); }}\n"
+        );
+        let options = naga::front::glsl::Options::from(naga::ShaderStage::Fragment);
+        naga::front::glsl::Frontend::default()
+            .parse(&options, &around)
+            .unwrap_or_else(|e| panic!("{what}: {}", e.emit_to_string(&around)));
+    }
+}
