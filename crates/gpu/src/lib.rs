@@ -1,1 +1,38 @@
 //! The GPU renderer of Zeroset, on wgpu.
+//!
+//! [`GpuRenderer`] renders the pictures of the CPU's renderer, on any GPU that runs compute shaders. It is made so that
+//! neither the desktop nor the caller suffers: a picture is dispatched in tiles of milliseconds, in bands that fit into
+//! memory; every wait ends; every failure of a driver is a [`GpuError`], so that a caller can go on with the CPU.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | `adapter` | what adapters there are and which one is taken |
+//! | `device` | the device, and everything that a driver can fail at |
+//! | `pipeline` | shaders, compiled once for scenes of equal structure |
+//! | `band`, `memory` | what fits into the device's memory, and the buffers |
+//! | `pace` | how large a tile is, from what earlier ones took |
+//! | `flight` | submissions on their way, and the GPU's clock |
+//! | `picture` | one picture: bands, stages, tiles |
+//! | `renderer` | the renderer, and what is done when the device fails |
+
+mod adapter;
+mod band;
+mod device;
+mod error;
+mod fault;
+mod flight;
+mod memory;
+mod pace;
+mod picture;
+mod pipeline;
+mod renderer;
+#[doc(hidden)]
+pub mod testing;
+mod timing;
+
+pub use adapter::{AdapterInfo, Choice, Kind, adapters};
+pub use device::Gpu;
+pub use error::GpuError;
+pub use renderer::GpuRenderer;
+pub use timing::{StageSeconds, Timings};
+pub use zeroset_shader::{FieldForm, Job};

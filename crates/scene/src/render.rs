@@ -119,4 +119,12 @@ pub enum RenderError {
         /// What the system said.
         reason: String,
     },
+    /// The device that renders, a GPU, failed: another renderer may not.
+    #[error("the GPU cannot render this: {reason}")]
+    Device {
+        /// What happened, the adapter named.
+        reason: String,
+        /// What can be done about it.
+        advice: Option<&'static str>,
+    },
 }

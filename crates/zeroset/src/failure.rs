@@ -104,6 +104,11 @@ impl From<RenderError> for Failure {
                 error.to_string(),
                 "ask for fewer threads with --threads",
             ),
+            RenderError::Device { advice: None, .. } => Failure::new(Exit::Job, error.to_string()),
+            RenderError::Device {
+                advice: Some(advice),
+                ..
+            } => Failure::with_help(Exit::Job, error.to_string(), advice),
         }
     }
 }

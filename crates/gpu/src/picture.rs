@@ -1,0 +1,402 @@
+//! One picture: band after band, stage after stage.
+
+use crate::band::{COUNTER_BYTES, LEAST_BUDGET, Room, Sizes};
+use crate::device::Gpu;
+use crate::error::GpuError;
+use crate::flight::{Dispatch, Equipment, Flight};
+use crate::memory::{Memory, unpack};
+use crate::pace::{Area, Costs, Cutter, LIMIT};
+use crate::pipeline::{Layouts, Pipelines, STAGES, Set};
+use crate::timing::{Stage, Timings};
+use std::sync::Arc;
+use std::time::Instant;
+use wgpu::MapMode;
+use zeroset_scene::film::{Film, Plane};
+use zeroset_scene::render::{Evaluations, Observer, RenderError, Statistics};
+use zeroset_shader::Job;
+use zeroset_shader::entry::{Binding, CONE_SIDES, WORKGROUP};
+use zeroset_shader::layout::Frame;
+
+/// Rows of the first band where cones were never measured: they are not cut into tiles.
+const FIRST_ROWS: u32 = 128;
+
+/// Tells an observer of rays, each once, also where a picture is begun anew.
+pub(crate) struct Progress<'a> {
+    observer: &'a dyn Observer,
+    total: u64,
+    told: u64,
+    done: f64,
+}
+
+impl<'a> Progress<'a> {
+    pub(crate) fn new(observer: &'a dyn Observer, job: &Job) -> Progress<'a> {
+        let [width, height] = job.frame.size.map(u64::from);
+        Progress {
+            observer,
+            total: width * height * u64::from(job.samples()),
+            told: 0,
+            done: 0.0,
+        }
+    }
+
+    pub(crate) fn observer(&self) -> &'a dyn Observer {
+        self.observer
+    }
+
+    /// Begins anew.
+    pub(crate) fn restart(&mut self) {
+        self.done = 0.0;
+    }
+
+    fn advance(&mut self, rays: f64) {
+        self.done += rays;
+        let done = (self.done as u64).min(self.total);
+        if done > self.told {
+            self.observer.advance(done - self.told, self.total);
+            self.told = done;
+        }
+    }
+
+    /// All rays of the rows before this one are done.
+    fn reach(&mut self, row: u32, job: &Job) {
+        let rays = u64::from(row) * u64::from(job.frame.size[0]) * u64::from(job.samples());
+        let rays = rays as f64 - self.done;
+        self.advance(rays);
+    }
+
+    fn check(&self) -> Result<(), GpuError> {
+        if self.observer.is_cancelled() {
+            return Err(GpuError::Scene(RenderError::Cancelled));
+        }
+        Ok(())
+    }
+}
+
+/// What a picture is rendered with, all of one device.
+pub(crate) struct Bench<'a> {
+    pub(crate) gpu: &'a Arc<Gpu>,
+    pub(crate) layouts: &'a Layouts,
+    pub(crate) memory: &'a mut Memory,
+    pub(crate) flight: &'a mut Flight,
+    pub(crate) set: &'a mut Set,
+    /// Bytes of all buffers of a band together.
+    pub(crate) budget: u64,
+}
+
+impl Bench<'_> {
+    /// Renders into a film of the job's size, as far as it has planes.
+    pub(crate) fn render(
+        &mut self,
+        job: &Job,
+        film: &mut Film,
+        progress: &mut Progress<'_>,
+        timings: &mut Timings,
+    ) -> Result<Statistics, GpuError> {
+        let planes: Vec<Plane> = Plane::ALL.into_iter().filter(|p| film.has(*p)).collect();
+        let (mut sums, mut first) = ([0; 8], 0);
+        timings.by_timestamps = self.gpu.tick.is_some();
+        while first < job.frame.size[1] {
+            let room = Room {
+                budget: self.budget.max(LEAST_BUDGET),
+                binding: self.gpu.largest_binding(),
+                rows: self.most_rows(job),
+            };
+            let rows = room.band(job, first, &planes, &self.gpu.info().title())?;
+            let counters = self.band(job, [first, rows], &planes, film, progress, timings)?;
+            for (sum, counter) in sums.iter_mut().zip(counters) {
+                *sum += counter;
+            }
+            first += rows;
+            timings.bands += 1;
+            progress.reach(first, job);
+        }
+        let [
+            prepass,
+            march,
+            normal,
+            occlusion,
+            shadow,
+            material,
+            rays,
+            hits,
+        ] = sums;
+        Ok(Statistics {
+            rays,
+            hits,
+            evaluations: Evaluations {
+                prepass,
+                march,
+                normal,
+                occlusion,
+                shadow,
+                material,
+            },
+            seconds: 0.0,
+            threads: 1,
+        })
+    }
+
+    /// Rows whose cones take no longer than a dispatch may.
+    fn most_rows(&self, job: &Job) -> u32 {
+        if !job.prepass() {
+            return u32::MAX;
+        }
+        let of = |stage: Stage| self.set.costs[stage as usize].dearest();
+        match of(Stage::ConesWide).zip(of(Stage::ConesNarrow)) {
+            None => FIRST_ROWS,
+            Some((wide, narrow)) => {
+                let row = wide.max(narrow) * f64::from(job.frame.size[0].max(1));
+                (0.5 * LIMIT / row).clamp(32.0, 1e9) as u32
+            }
+        }
+    }
+
+    /// Renders `rows`: the first and how many.
+    fn band(
+        &mut self,
+        job: &Job,
+        rows: [u32; 2],
+        planes: &[Plane],
+        film: &mut Film,
+        progress: &mut Progress<'_>,
+        timings: &mut Timings,
+    ) -> Result<[u64; 8], GpuError> {
+        let frame = job.band(rows[0], rows[1], planes);
+        let sizes = Sizes::new(&frame, planes);
+        progress.check()?;
+        self.memory.fill(
+            self.gpu,
+            self.layouts,
+            &self.flight.tiles,
+            job,
+            &frame,
+            &sizes,
+        )?;
+        let Some(groups) = self.memory.groups() else {
+            return Err(self.without("bind groups"));
+        };
+        let mut run = Run {
+            flight: self.flight,
+            pipelines: &self.set.pipelines,
+            costs: &mut self.set.costs,
+            groups,
+            size: frame.size,
+            share: f64::from(rows[1]) / f64::from(frame.band[1].max(1)),
+            progress,
+            timings,
+        };
+        let [from, stored, ..] = frame.band;
+        let across = |first, count| Area {
+            corner: [0, first],
+            size: [frame.size[0], count],
+        };
+        let (stored, given) = (across(from, stored), across(rows[0], rows[1]));
+        if !self.set.is_warm {
+            run.warm_up(given)?;
+            self.set.is_warm = true;
+        }
+        if let Some(counters) = self.memory.buffer(Binding::Counters) {
+            run.flight.encoder().clear_buffer(counters, 0, None);
+        }
+        if job.prepass() {
+            run.cones(Stage::ConesWide, &frame, stored, CONE_SIDES[0])?;
+            run.cones(Stage::ConesNarrow, &frame, stored, CONE_SIDES[1])?;
+        }
+        for sample in 0..job.samples() {
+            run.tiles(Stage::Trace, stored, sample)?;
+            run.tiles(Stage::Gather, given, sample)?;
+        }
+        run.tiles(Stage::Develop, given, 0)?;
+        self.read(&frame, &sizes, planes, film, progress, timings)
+    }
+
+    /// Reads the finished planes of a band.
+    fn read(
+        &mut self,
+        frame: &Frame,
+        sizes: &Sizes,
+        planes: &[Plane],
+        film: &mut Film,
+        progress: &mut Progress<'_>,
+        timings: &mut Timings,
+    ) -> Result<[u64; 8], GpuError> {
+        let of = |binding| self.memory.buffer(binding);
+        let (Some(made), Some(counters), Some(read)) = (
+            of(Binding::Planes),
+            of(Binding::Counters),
+            self.memory.read(),
+        ) else {
+            return Err(self.without("buffers"));
+        };
+        let encoder = self.flight.encoder();
+        if sizes.planes > 0 {
+            encoder.copy_buffer_to_buffer(made, 0, read, 0, sizes.planes);
+        }
+        encoder.copy_buffer_to_buffer(counters, 0, read, sizes.planes, COUNTER_BYTES);
+        let share = f64::from(frame.band[3]) / f64::from(frame.band[1].max(1));
+        let (costs, size) = (&mut self.set.costs, frame.size);
+        let mut done = |d: Dispatch| note(d, share, size, costs, progress, timings);
+        self.flight.flush(&mut done)?;
+        // what it says is seen when the range is asked for
+        read.map_async(MapMode::Read, .., |_| {});
+        self.flight.finish(&mut done)?;
+        let mapped = read.get_mapped_range(..sizes.read);
+        let counters = match &mapped {
+            Ok(view) => unpack(view, frame, planes, film),
+            Err(error) => return Err(self.without(&error.to_string())),
+        };
+        drop(mapped);
+        read.unmap();
+        Ok(counters)
+    }
+
+    fn without(&self, reason: &str) -> GpuError {
+        GpuError::Refused {
+            adapter: self.gpu.info().title(),
+            reason: format!("the picture cannot be read: {reason}"),
+        }
+    }
+}
+
+/// Takes in what a dispatch took.
+fn note(
+    dispatch: Dispatch,
+    share: f64,
+    size: [u32; 2],
+    costs: &mut [Costs; STAGES],
+    progress: &mut Progress<'_>,
+    timings: &mut Timings,
+) {
+    let stage = dispatch.stage as usize;
+    costs[stage].learn(&dispatch.area, size, dispatch.seconds, dispatch.predicted);
+    timings.dispatches += 1;
+    timings.stages.0[stage] += dispatch.seconds;
+    timings.longest = timings.longest.max(dispatch.seconds);
+    if dispatch.stage == Stage::Trace {
+        progress.advance(dispatch.area.pixels() as f64 * share);
+    }
+}
+
+/// The stages of one band.
+struct Run<'a, 'o> {
+    flight: &'a mut Flight,
+    pipelines: &'a Pipelines,
+    costs: &'a mut [Costs; STAGES],
+    groups: &'a [wgpu::BindGroup; STAGES],
+    size: [u32; 2],
+    /// Share of the rays that is not traced by another band too.
+    share: f64,
+    progress: &'a mut Progress<'o>,
+    timings: &'a mut Timings,
+}
+
+impl Run<'_, '_> {
+    /// Runs every pipeline once on as little as can be, for drivers that compile when a pipeline is run. What they write is
+    /// written again later.
+    fn warm_up(&mut self, given: Area) -> Result<(), GpuError> {
+        let began = Instant::now();
+        let area = Area {
+            corner: given.corner,
+            size: given.size.map(|n| n.min(WORKGROUP)),
+        };
+        let stages = [
+            Stage::ConesWide,
+            Stage::ConesNarrow,
+            Stage::Trace,
+            Stage::Gather,
+            Stage::Develop,
+        ];
+        for stage in stages {
+            self.progress.check()?;
+            self.record(stage, area, Some(0.0), [1, 1], 0)?;
+            self.flight.finish(&mut |_| {})?;
+        }
+        self.timings.compile += began.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    /// Marches all cones of a size.
+    fn cones(
+        &mut self,
+        stage: Stage,
+        frame: &Frame,
+        area: Area,
+        side: u32,
+    ) -> Result<(), GpuError> {
+        let known = &self.costs[stage as usize];
+        let predicted = known.dearest().map(|rate| rate * area.pixels() as f64);
+        let groups = frame.cells(side).map(|n| n.div_ceil(WORKGROUP));
+        if predicted.is_none() {
+            self.finish()?;
+        }
+        self.add(stage, area, predicted, groups, 0)?;
+        if predicted.is_none() {
+            self.finish()?;
+        }
+        Ok(())
+    }
+
+    /// Dispatches an area in tiles.
+    fn tiles(&mut self, stage: Stage, area: Area, index: u32) -> Result<(), GpuError> {
+        let mut cutter = Cutter::new(area, self.size[1]);
+        while let Some(tile) = cutter.next(&self.costs[stage as usize]) {
+            if tile.is_guess {
+                self.finish()?;
+            }
+            self.add(stage, tile.area, tile.predicted, tile.area.groups(), index)?;
+            if tile.is_guess {
+                self.finish()?;
+            }
+        }
+        Ok(())
+    }
+
+    fn add(
+        &mut self,
+        stage: Stage,
+        area: Area,
+        predicted: Option<f64>,
+        groups: [u32; 2],
+        index: u32,
+    ) -> Result<(), GpuError> {
+        if self.flight.is_full(predicted) {
+            self.progress.check()?;
+            let (costs, progress, timings) =
+                (&mut *self.costs, &mut *self.progress, &mut *self.timings);
+            let (share, size) = (self.share, self.size);
+            self.flight
+                .flush(&mut |d| note(d, share, size, costs, progress, timings))?;
+        }
+        self.record(stage, area, predicted, groups, index)
+    }
+
+    fn record(
+        &mut self,
+        stage: Stage,
+        area: Area,
+        predicted: Option<f64>,
+        groups: [u32; 2],
+        index: u32,
+    ) -> Result<(), GpuError> {
+        let with = Equipment {
+            pipelines: self.pipelines,
+            groups: self.groups,
+        };
+        let dispatch = Dispatch {
+            stage,
+            area,
+            predicted,
+            seconds: 0.0,
+        };
+        self.flight.dispatch(&with, dispatch, groups, index)
+    }
+
+    fn finish(&mut self) -> Result<(), GpuError> {
+        self.progress.check()?;
+        let (costs, progress, timings) =
+            (&mut *self.costs, &mut *self.progress, &mut *self.timings);
+        let (share, size) = (self.share, self.size);
+        self.flight
+            .finish(&mut |d| note(d, share, size, costs, progress, timings))
+    }
+}

@@ -1,0 +1,202 @@
+//! Pipelines: one set for each shader text, kept for scenes of equal structure.
+
+use crate::device::Gpu;
+use crate::error::GpuError;
+use crate::pace::Costs;
+use std::num::NonZeroU64;
+use std::sync::Arc;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::{Duration, Instant};
+use wgpu::{
+    BindGroupLayout, BindGroupLayoutEntry, BindingType, BufferBindingType, ComputePipeline,
+    PipelineCompilationOptions, PipelineLayout, ShaderStages,
+};
+use zeroset_scene::render::{Observer, RenderError};
+use zeroset_shader::entry::{Binding, ENTRIES};
+use zeroset_shader::layout::{Frame, Tile};
+
+/// Entry points.
+pub(crate) const STAGES: usize = ENTRIES.len();
+/// How long a driver may compile.
+const PATIENCE: Duration = Duration::from_secs(120);
+/// Parsing and the compilers of drivers recurse along expressions: main threads of some systems have 1 MiB.
+const STACK: usize = 64 << 20;
+/// Sets that are kept.
+const KEPT: usize = 24;
+
+/// What entry points see, equal for all scenes.
+pub(crate) struct Layouts {
+    pub(crate) groups: Vec<BindGroupLayout>,
+    pipelines: Vec<PipelineLayout>,
+}
+
+impl Layouts {
+    pub(crate) fn new(gpu: &Gpu) -> Result<Layouts, GpuError> {
+        gpu.watched(0, || {
+            let group = |entry: &zeroset_shader::entry::Entry| {
+                let entries: Vec<_> = entry.bindings.iter().map(|b| layout(*b)).collect();
+                gpu.device
+                    .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                        label: Some(entry.name),
+                        entries: &entries,
+                    })
+            };
+            let groups: Vec<_> = ENTRIES.iter().map(group).collect();
+            let pipeline = |group: &BindGroupLayout| {
+                gpu.device
+                    .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                        label: None,
+                        bind_group_layouts: &[Some(group)],
+                        immediate_size: 0,
+                    })
+            };
+            let pipelines = groups.iter().map(pipeline).collect();
+            Layouts { groups, pipelines }
+        })
+    }
+}
+
+/// How a shader sees a buffer.
+fn layout(binding: Binding) -> BindGroupLayoutEntry {
+    let storage = |read_only| BufferBindingType::Storage { read_only };
+    let (ty, size) = match binding {
+        Binding::Frame => (BufferBindingType::Uniform, size_of::<Frame>()),
+        Binding::Tile => (BufferBindingType::Uniform, size_of::<Tile>()),
+        Binding::Params | Binding::Code | Binding::Table => (storage(true), 0),
+        _ => (storage(false), 0),
+    };
+    BindGroupLayoutEntry {
+        binding: binding as u32,
+        visibility: ShaderStages::COMPUTE,
+        ty: BindingType::Buffer {
+            ty,
+            has_dynamic_offset: binding == Binding::Tile,
+            min_binding_size: NonZeroU64::new(size as u64),
+        },
+        count: None,
+    }
+}
+
+/// The entry points of a shader, in the order of [`ENTRIES`].
+pub(crate) type Pipelines = [ComputePipeline; STAGES];
+
+/// The pipelines of a shader text, and what is known about them.
+pub(crate) struct Set {
+    source: Arc<str>,
+    pub(crate) pipelines: Pipelines,
+    /// What pixels cost, by stage.
+    pub(crate) costs: [Costs; STAGES],
+    /// Whether each has run: some drivers compile when a pipeline runs first.
+    pub(crate) is_warm: bool,
+}
+
+/// Sets of pipelines, the one that was used last at the end.
+#[derive(Default)]
+pub(crate) struct Cache {
+    sets: Vec<Set>,
+}
+
+impl Cache {
+    /// The pipelines of a shader text, compiled if they are not there.
+    ///
+    /// # Errors
+    /// It does not compile, or not in time, or the observer asked to stop.
+    pub(crate) fn get(
+        &mut self,
+        gpu: &Arc<Gpu>,
+        layouts: &Arc<Layouts>,
+        source: &Arc<str>,
+        observer: &dyn Observer,
+    ) -> Result<&mut Set, GpuError> {
+        let is_it = |set: &Set| Arc::ptr_eq(&set.source, source) || set.source == *source;
+        let set = match self.sets.iter().position(is_it) {
+            Some(at) => self.sets.remove(at),
+            None => Set {
+                source: Arc::clone(source),
+                pipelines: compile_apart(gpu, layouts, source, observer)?,
+                costs: Default::default(),
+                is_warm: false,
+            },
+        };
+        if self.sets.len() == KEPT {
+            self.sets.remove(0);
+        }
+        self.sets.push(set);
+        let last = self.sets.len() - 1;
+        Ok(&mut self.sets[last])
+    }
+}
+
+/// Compiles on a thread with a large stack, which is left behind if the driver does not come back.
+fn compile_apart(
+    gpu: &Arc<Gpu>,
+    layouts: &Arc<Layouts>,
+    source: &Arc<str>,
+    observer: &dyn Observer,
+) -> Result<Pipelines, GpuError> {
+    let (tell, told) = mpsc::channel();
+    let apart = (Arc::clone(gpu), Arc::clone(layouts), Arc::clone(source));
+    let began = Instant::now();
+    thread::Builder::new()
+        .name("compile shader".to_owned())
+        .stack_size(STACK)
+        .spawn(move || {
+            // nobody listens any more: the rendering was cancelled
+            let _ = tell.send(compile(&apart.0, &apart.1, &apart.2));
+        })
+        .map_err(|error| GpuError::Shader {
+            log: format!("no thread can be started for it: {error}"),
+        })?;
+    loop {
+        match told.recv_timeout(Duration::from_millis(20)) {
+            Ok(compiled) => return compiled,
+            Err(RecvTimeoutError::Disconnected) => {
+                return Err(GpuError::Shader {
+                    log: "the compiler failed".to_owned(),
+                });
+            }
+            Err(RecvTimeoutError::Timeout) if observer.is_cancelled() => {
+                return Err(GpuError::Scene(RenderError::Cancelled));
+            }
+            Err(RecvTimeoutError::Timeout) if began.elapsed() > PATIENCE => {
+                return Err(GpuError::SlowCompiler {
+                    seconds: PATIENCE.as_secs(),
+                });
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+        }
+    }
+}
+
+fn compile(gpu: &Gpu, layouts: &Layouts, source: &str) -> Result<Pipelines, GpuError> {
+    let failed = |error: GpuError| match error {
+        GpuError::Refused { reason: log, .. } => GpuError::Shader { log },
+        other => other,
+    };
+    let module = gpu
+        .watched(0, || {
+            gpu.device
+                .create_shader_module(wgpu::ShaderModuleDescriptor {
+                    label: Some("scene"),
+                    source: wgpu::ShaderSource::Wgsl(source.into()),
+                })
+        })
+        .map_err(failed)?;
+    let stages = gpu
+        .watched(0, || {
+            std::array::from_fn(|k| {
+                gpu.device
+                    .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                        label: Some(ENTRIES[k].name),
+                        layout: Some(&layouts.pipelines[k]),
+                        module: &module,
+                        entry_point: Some(ENTRIES[k].name),
+                        compilation_options: PipelineCompilationOptions::default(),
+                        cache: None,
+                    })
+            })
+        })
+        .map_err(failed)?;
+    Ok(stages)
+}

@@ -1,0 +1,256 @@
+//! The renderer: pictures, and what is done when the device fails.
+
+use crate::adapter::{AdapterInfo, Choice};
+use crate::band::{BUDGET, LEAST_BUDGET};
+use crate::device::Gpu;
+use crate::error::GpuError;
+use crate::fault::Faults;
+use crate::flight::Flight;
+use crate::memory::Memory;
+use crate::picture::{Bench, Progress};
+use crate::pipeline::{Cache, Layouts};
+use crate::timing::Timings;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+use zeroset_scene::film::{Film, Plane};
+use zeroset_scene::render::{Frame, Observer, RenderError, Renderer, Statistics};
+use zeroset_scene::scene::Scene;
+use zeroset_shader::{FieldForm, Job, Shaders};
+
+/// The GPU's renderer.
+///
+/// Shaders, buffers and what is known about their speed are kept from picture to picture; pictures of several threads are
+/// rendered one after the other. Where memory runs out, a picture is rendered in smaller bands; where the device is lost,
+/// it is opened anew, once a picture. What remains is an error, and the renderer can be asked again.
+///
+/// ```
+/// use zeroset_gpu::{Choice, GpuRenderer};
+/// use zeroset_scene::load::{Language, Options, load_text};
+/// use zeroset_scene::render::{Renderer, Silent};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let options = Options { size: Some([48, 32]), ..Options::default() };
+/// let loaded = load_text("a.star", "show(sphere())", Language::Starlark, None, &options)?;
+/// match GpuRenderer::new(&Choice::Any) {
+///     Ok(renderer) => assert!(renderer.render(&loaded.scene, &Silent)?.statistics.rays > 0),
+///     Err(error) => println!("rendering on the CPU: {error}"),
+/// }
+/// # Ok(())
+/// # }
+/// ```
+pub struct GpuRenderer {
+    choice: Choice,
+    faults: Faults,
+    adapter: AdapterInfo,
+    state: Mutex<State>,
+}
+
+struct State {
+    shaders: Shaders,
+    opened: Option<Opened>,
+    /// Bytes of the buffers of a band together.
+    budget: u64,
+    timings: Option<Timings>,
+}
+
+/// A device and all that belongs to it.
+struct Opened {
+    gpu: Arc<Gpu>,
+    layouts: Arc<Layouts>,
+    cache: Cache,
+    memory: Memory,
+    flight: Flight,
+}
+
+impl Opened {
+    fn new(gpu: Arc<Gpu>) -> Result<Opened, GpuError> {
+        Ok(Opened {
+            layouts: Arc::new(Layouts::new(&gpu)?),
+            flight: Flight::new(&gpu)?,
+            cache: Cache::default(),
+            memory: Memory::default(),
+            gpu,
+        })
+    }
+}
+
+impl GpuRenderer {
+    /// A renderer on the adapter that a choice means.
+    ///
+    /// # Errors
+    /// There is no such adapter, it lacks something, or its driver gives no device.
+    pub fn new(choice: &Choice) -> Result<GpuRenderer, GpuError> {
+        GpuRenderer::with_faults(choice, Faults::default())
+    }
+
+    /// A renderer that fails on demand.
+    ///
+    /// # Errors
+    /// As [`GpuRenderer::new`].
+    #[doc(hidden)]
+    pub fn with_faults(choice: &Choice, faults: Faults) -> Result<GpuRenderer, GpuError> {
+        let gpu = Arc::new(Gpu::open_with(choice, faults.clone())?);
+        let adapter = gpu.info().clone();
+        let state = State {
+            shaders: Shaders::new(FieldForm::default()),
+            opened: Some(Opened::new(gpu)?),
+            budget: BUDGET,
+            timings: None,
+        };
+        Ok(GpuRenderer {
+            choice: choice.clone(),
+            faults,
+            adapter,
+            state: Mutex::new(state),
+        })
+    }
+
+    /// With another way to bring fields into shaders than the automatic one.
+    #[must_use]
+    pub fn with_form(self, form: FieldForm) -> GpuRenderer {
+        self.state().shaders = Shaders::new(form);
+        self
+    }
+
+    /// With another limit on the bytes of all buffers of a picture together, about 256 MiB otherwise. A picture that needs
+    /// more is rendered in bands.
+    #[must_use]
+    pub fn with_budget(self, bytes: u64) -> GpuRenderer {
+        self.state().budget = bytes;
+        self
+    }
+
+    /// The adapter.
+    pub fn adapter(&self) -> &AdapterInfo {
+        &self.adapter
+    }
+
+    /// What the last finished picture took.
+    pub fn timings(&self) -> Option<Timings> {
+        self.state().timings.clone()
+    }
+
+    /// Compiles a scene, so that it can be rendered more than once.
+    ///
+    /// # Errors
+    /// See [`RenderError`].
+    pub fn prepare(&self, scene: &Scene) -> Result<Job, RenderError> {
+        self.state().shaders.prepare(scene)
+    }
+
+    /// Renders into a film that is there already, as far as it has planes. One of another size than the job's is replaced.
+    ///
+    /// # Errors
+    /// See [`GpuError`]; the film is then unfinished.
+    pub fn render_into(
+        &self,
+        job: &Job,
+        film: &mut Film,
+        observer: &dyn Observer,
+    ) -> Result<Statistics, GpuError> {
+        let [width, height] = job.frame.size;
+        if [film.width(), film.height()] != [width, height] {
+            let planes: Vec<Plane> = Plane::ALL.into_iter().filter(|p| film.has(*p)).collect();
+            *film = Film::with(width, height, &planes);
+        }
+        let began = Instant::now();
+        let mut state = self.state();
+        let mut timings = Timings::new(self.adapter.clone(), [width, height], job.samples());
+        let mut progress = Progress::new(observer, job);
+        let mut was_lost = false;
+        let statistics = loop {
+            let failure = match self.attempt(&mut state, job, film, &mut progress, &mut timings) {
+                Ok(statistics) => break statistics,
+                Err(failure) => failure,
+            };
+            match &failure {
+                GpuError::OutOfMemory { .. } if state.budget > LEAST_BUDGET => {
+                    state.budget = (state.budget / 4).max(LEAST_BUDGET);
+                    if let Some(opened) = &mut state.opened {
+                        opened.memory = Memory::default();
+                        opened.flight.drain()?;
+                    }
+                    tracing::debug!("{failure}: {} bytes are tried", state.budget);
+                }
+                GpuError::Lost { .. } if !was_lost => {
+                    was_lost = true;
+                    state.opened = None;
+                    tracing::debug!("{failure}: it is opened anew");
+                }
+                GpuError::Scene(RenderError::Cancelled) => {
+                    if let Some(opened) = &mut state.opened {
+                        opened.flight.drain()?;
+                    }
+                    return Err(failure);
+                }
+                _ => {
+                    // whatever is left of it is not trusted
+                    state.opened = None;
+                    return Err(failure);
+                }
+            }
+            progress.restart();
+            timings.retries += 1;
+        };
+        timings.wall = began.elapsed().as_secs_f64();
+        let seconds = timings.wall;
+        state.timings = Some(timings);
+        Ok(Statistics {
+            seconds,
+            ..statistics
+        })
+    }
+
+    fn attempt(
+        &self,
+        state: &mut State,
+        job: &Job,
+        film: &mut Film,
+        progress: &mut Progress<'_>,
+        timings: &mut Timings,
+    ) -> Result<Statistics, GpuError> {
+        let opened = match &mut state.opened {
+            Some(opened) => opened,
+            none => {
+                let gpu = Gpu::open_with(&self.choice, self.faults.clone())?;
+                none.insert(Opened::new(Arc::new(gpu))?)
+            }
+        };
+        let began = Instant::now();
+        let set = opened.cache.get(
+            &opened.gpu,
+            &opened.layouts,
+            &job.source,
+            progress.observer(),
+        )?;
+        if !set.is_warm {
+            timings.compile += began.elapsed().as_secs_f64();
+        }
+        let before = opened.flight.submissions;
+        let mut bench = Bench {
+            gpu: &opened.gpu,
+            layouts: &opened.layouts,
+            memory: &mut opened.memory,
+            flight: &mut opened.flight,
+            set,
+            budget: state.budget,
+        };
+        let statistics = bench.render(job, film, progress, timings)?;
+        timings.submissions += opened.flight.submissions - before;
+        Ok(statistics)
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Renderer for GpuRenderer {
+    fn render(&self, scene: &Scene, observer: &dyn Observer) -> Result<Frame, RenderError> {
+        let job = self.prepare(scene)?;
+        let [width, height] = scene.settings.size;
+        let mut film = Film::new(width, height);
+        let statistics = self.render_into(&job, &mut film, observer)?;
+        Ok(Frame { film, statistics })
+    }
+}

@@ -1,0 +1,79 @@
+// Stands in for a scene's shader: every pixel's colour is where it is and the mean number of its rays.
+@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(1) var<uniform> tile: Tile;
+@group(0) @binding(2) var<storage, read> params: array<f32>;
+@group(0) @binding(3) var<storage, read> code: array<u32>;
+@group(0) @binding(4) var<storage, read> table: array<vec4f>;
+@group(0) @binding(5) var<storage, read_write> cones: array<vec4f>;
+@group(0) @binding(6) var<storage, read_write> samples: array<Sample>;
+@group(0) @binding(7) var<storage, read_write> light_sums: array<LightSum>;
+@group(0) @binding(8) var<storage, read_write> surface_sums: array<SurfaceSum>;
+@group(0) @binding(9) var<storage, read_write> planes: array<f32>;
+@group(0) @binding(10) var<storage, read_write> counters: array<atomic<u32>, 16>;
+
+fn cells(side: u32) -> vec2u {
+    let down = (frame.band.x + frame.band.y + side - 1u) / side - frame.band.x / side;
+    return vec2u((frame.size.x + side - 1u) / side, down);
+}
+
+fn cone(id: vec2u, side: u32, first: u32) {
+    let count = cells(side);
+    if id.x >= count.x || id.y >= count.y { return; }
+    cones[first + id.y * count.x + id.x] = vec4f(f32(side));
+    atomicAdd(&counters[0], 1u);
+}
+
+@compute @workgroup_size(8, 8) fn cones_wide(@builtin(global_invocation_id) id: vec3u) {
+    cone(id.xy, 32u, 0u);
+}
+
+@compute @workgroup_size(8, 8) fn cones_narrow(@builtin(global_invocation_id) id: vec3u) {
+    cone(id.xy, 8u, frame.wide_cones);
+}
+
+@compute @workgroup_size(8, 8) fn trace(@builtin(global_invocation_id) id: vec3u) {
+    if id.x >= tile.size.x || id.y >= tile.size.y { return; }
+    let p = tile.corner + id.xy;
+    var work = 0.0;
+    for (var i = 0u; i < u32(params[0]); i++) { work = fract(work * 1.3 + f32(i) * table[0].x); }
+    let at = (p.y - frame.band.x) * frame.size.x + p.x;
+    let cells = cells(8u);
+    let cell = cones[frame.wide_cones + (p.y / 8u - frame.band.x / 8u) * cells.x + p.x / 8u].x;
+    samples[at].colour = vec3f(f32(p.x), f32(p.y), f32(tile.index) + min(work, 0.0));
+    samples[at].depth = select(cell, f32(code[0]), frame.prepass == 0u);
+    atomicAdd(&counters[12], 1u);
+    if p.x == 0u { atomicAdd(&counters[14], 1u); }
+    // 2^32 evaluations: the high half of a counter counts too
+    if p.x == 0u && p.y == 0u { atomicAdd(&counters[3], 1u); }
+}
+
+@compute @workgroup_size(8, 8) fn gather(@builtin(global_invocation_id) id: vec3u) {
+    if id.x >= tile.size.x || id.y >= tile.size.y { return; }
+    let p = tile.corner + id.xy;
+    let to = (p.y - frame.band.z) * frame.size.x + p.x;
+    let source = (p.y - frame.band.x) * frame.size.x + p.x;
+    if tile.index == 0u {
+        light_sums[to].colour = vec3f(0.0);
+        light_sums[to].weight = 0.0;
+    }
+    // the rows that the band stores beside those that it gives
+    let last = frame.band.x + frame.band.y - 1u;
+    let below = samples[(min(p.y + frame.filter_kind, last) - frame.band.x) * frame.size.x + p.x].colour.y;
+    light_sums[to].colour += vec3f(samples[source].colour.x, below, samples[source].colour.z);
+    light_sums[to].weight += 1.0;
+    surface_sums[to].depth = samples[source].depth;
+}
+
+@compute @workgroup_size(8, 8) fn develop(@builtin(global_invocation_id) id: vec3u) {
+    if id.x >= tile.size.x || id.y >= tile.size.y { return; }
+    let p = tile.corner + id.xy;
+    let at = (p.y - frame.band.z) * frame.size.x + p.x;
+    if frame.planes_a.x != 0xffffffffu {
+        let to = frame.planes_a.x + 3u * at;
+        let colour = light_sums[at].colour / light_sums[at].weight;
+        planes[to] = colour.x;
+        planes[to + 1u] = colour.y;
+        planes[to + 2u] = colour.z;
+    }
+    if frame.planes_a.z != 0xffffffffu { planes[frame.planes_a.z + at] = surface_sums[at].depth; }
+}
