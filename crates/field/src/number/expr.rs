@@ -7,7 +7,7 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// A number of a recorded formula: a literal, which operations fold, or a value of the record.
 ///
-/// Operations whose result is plain (x + 0, x * 1, x * 0) leave no trace: it is what keeps recorded gradients short.
+/// Operations whose result is plain (x + 0, x * 1, x * 0, min(x, x)) leave no trace: it is what keeps recorded gradients short.
 #[derive(Clone, Copy, Debug)]
 pub struct Expr<'r>(Number<'r>);
 
@@ -71,6 +71,11 @@ impl<'r> Expr<'r> {
         match (self.0, o.0) {
             (Number::Literal(a, r), Number::Literal(b, s)) => {
                 Expr::literal(fold_binary(f, a, b), r.or(s))
+            }
+            (Number::Value(_, a), Number::Value(_, b))
+                if a == b && matches!(f, Binary::Min | Binary::Max) =>
+            {
+                self
             }
             (Number::Value(r, _), _) | (_, Number::Value(r, _)) => {
                 Expr::value(r, r.add(Op::Binary(f, self.id(r), o.id(r))))
