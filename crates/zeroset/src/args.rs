@@ -59,6 +59,8 @@ pub(crate) enum Command {
     Check(Check),
     /// Print a scene as JSON, which every command takes in place of a script
     Expand(Expand),
+    /// Print a scene as one shader: WGSL, or GLSL that runs when it is pasted into Shadertoy
+    Export(Export),
     /// List what the scene language offers, or explain one name
     Fields(Fields),
     /// Draw a section through a scene's distance field, with lines of equal distance
@@ -155,6 +157,31 @@ pub(crate) struct Expand {
     /// Write to a file instead of standard output
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Export {
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    #[command(flatten)]
+    pub language: ShaderLanguage,
+    /// Size in pixels that WGSL draws. (Shadertoy has its own.) Default: what the scene says, or 512x512
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<Size>,
+    /// Write to a file instead of standard output
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+#[group(required = true, multiple = false)]
+pub(crate) struct ShaderLanguage {
+    /// As a WGSL module with a vertex and a fragment entry point, for WebGPU and wgpu
+    #[arg(long)]
+    pub wgsl: bool,
+    /// As GLSL that runs when it is pasted into Shadertoy; dragging with the mouse looks around
+    #[arg(long)]
+    pub glsl: bool,
 }
 
 #[derive(Debug, Args)]

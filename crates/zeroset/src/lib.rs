@@ -5,6 +5,7 @@
 //! | [`field`] | numbers, the catalogue of fields, field trees, programs |
 //! | [`scene`] | scenes and the language they are written in |
 //! | [`trace`] | the renderer on the CPU |
+//! | [`shader`] | shaders for any scene, in WGSL and GLSL |
 //! | [`output`] | pictures and files |
 //! | [`section`] | fields on a plane |
 //!
@@ -40,4 +41,5 @@ pub mod section;
 pub use zeroset_field as field;
 pub use zeroset_output as output;
 pub use zeroset_scene as scene;
+pub use zeroset_shader as shader;
 pub use zeroset_trace as trace;

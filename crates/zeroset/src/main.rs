@@ -66,6 +66,7 @@ fn run(command: &Command, console: &Console) -> Result<(), Failure> {
         Command::Render(args) => render::run(args, console),
         Command::Check(args) => command::check::run(args, console),
         Command::Expand(args) => command::expand::run(args, console),
+        Command::Export(args) => command::export::run(args, console),
         Command::Slice(args) => command::slice::run(args, console),
         Command::Fields(args) => command::fields::run(args, console),
         Command::Compare(args) => command::compare::run(args, console),

@@ -4,6 +4,7 @@ pub(crate) mod check;
 pub(crate) mod compare;
 pub(crate) mod completions;
 pub(crate) mod expand;
+pub(crate) mod export;
 pub(crate) mod fields;
 pub(crate) mod init;
 pub(crate) mod slice;

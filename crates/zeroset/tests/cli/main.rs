@@ -1,6 +1,7 @@
 //! The command line from outside: exit codes, what goes to which stream, and what happens to files.
 
 mod compare;
+mod export;
 mod frames;
 mod language;
 mod reference;

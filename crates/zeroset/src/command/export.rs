@@ -1,0 +1,42 @@
+//! `zeroset export`.
+
+use crate::args::Export;
+use crate::console::Console;
+use crate::failure::{Exit, Failure};
+use std::io::Write;
+use zeroset_output::atomic::{probe, write_atomically};
+use zeroset_shader::export::{ExportError, glsl, wgsl};
+
+/// Prints a scene as one file of shader text.
+pub(crate) fn run(args: &Export, console: &Console) -> Result<(), Failure> {
+    if let Some(path) = &args.output {
+        probe(path)?;
+    }
+    let options = crate::scene::options(&args.scene, args.size.map(|s| s.0))?;
+    let scene = crate::scene::loaded(&args.scene, &options, console)?.scene;
+    let text = if args.language.glsl {
+        glsl(&scene)?
+    } else {
+        wgsl(&scene)?
+    };
+    match &args.output {
+        None => console.print(&text),
+        Some(path) => Ok(write_atomically(path, |writer| {
+            writer.write_all(text.as_bytes())
+        })?),
+    }
+}
+
+impl From<ExportError> for Failure {
+    fn from(error: ExportError) -> Self {
+        match error {
+            ExportError::Scene(error) => error.into(),
+            ExportError::Large { .. } => Failure::with_help(
+                Exit::Scene,
+                error.to_string(),
+                "export a part of the scene, or render it with `zeroset render`, which has no such limit",
+            ),
+            ExportError::Translation(_) => Failure::new(Exit::Job, error.to_string()),
+        }
+    }
+}
