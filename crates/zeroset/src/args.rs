@@ -1,5 +1,6 @@
 //! The command line: what can be asked, and in what words.
 
+use crate::backend::Backend;
 use crate::console::Colour;
 use crate::failure::EXIT_CODES;
 use crate::values::{Frames, MarchChoice, SectionPlane, Size, Window, assignment};
@@ -69,6 +70,9 @@ pub(crate) enum Command {
     Compare(Compare),
     /// Measure how fast this machine is
     Bench(Bench),
+    /// List the GPUs of this machine, what they can do, and which one renders
+    #[cfg(feature = "gpu")]
+    Gpu(Gpu),
     /// Make a folder with a first scene to play with
     Init(Init),
     /// Print completions for a shell
@@ -123,7 +127,13 @@ pub(crate) struct Render {
     /// How rays find the surface: fixed[=STEP], sphere, relaxed[=OMEGA], enhanced[=SHARE] or auto[=BETA]
     #[arg(long, value_name = "METHOD")]
     pub march: Option<MarchChoice>,
-    /// Threads; the picture is the same with any number. Default: all cores
+    /// What renders
+    #[arg(long, value_name = "WHAT", value_enum, default_value_t)]
+    pub backend: Backend,
+    /// The GPU whose name holds this text; `zeroset gpu` lists them. One that fails is an error
+    #[arg(long, value_name = "NAME")]
+    pub adapter: Option<String>,
+    /// Threads of the CPU; the picture is the same with any number. Default: all cores
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Render many pictures, numbered from A to just before B (or A..=B with B), one for each frame of time. In the
@@ -262,9 +272,23 @@ pub(crate) struct MeasuredFrame {
     /// The scene. Default: a sphere and a box on the ground, soft shadows, 5-tap occlusion, 512x512
     #[arg(value_name = "SCENE", value_hint = ValueHint::FilePath)]
     pub scene: Option<PathBuf>,
-    /// Threads of both renderers
+    /// What is measured: the CPU against the plain renderer, or a GPU against the CPU
+    #[arg(long, value_name = "WHAT", value_enum, default_value_t = Backend::Cpu)]
+    pub backend: Backend,
+    /// The GPU whose name holds this text; `zeroset gpu` lists them
+    #[arg(long, value_name = "NAME")]
+    pub adapter: Option<String>,
+    /// Threads of the CPU's renderers
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: u16,
+    /// Print as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[cfg(feature = "gpu")]
+#[derive(Debug, Args)]
+pub(crate) struct Gpu {
     /// Print as JSON
     #[arg(long)]
     pub json: bool,

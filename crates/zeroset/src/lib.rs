@@ -6,6 +6,7 @@
 //! | [`scene`] | scenes and the language they are written in |
 //! | [`trace`] | the renderer on the CPU |
 //! | [`shader`] | shaders for any scene, in WGSL and GLSL |
+//! | `gpu` | the renderer on the GPU, with the feature of that name |
 //! | [`output`] | pictures and files |
 //! | [`section`] | fields on a plane |
 //!
@@ -39,6 +40,8 @@
 pub mod section;
 
 pub use zeroset_field as field;
+#[cfg(feature = "gpu")]
+pub use zeroset_gpu as gpu;
 pub use zeroset_output as output;
 pub use zeroset_scene as scene;
 pub use zeroset_shader as shader;

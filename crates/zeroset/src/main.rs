@@ -1,6 +1,7 @@
 //! The command line of Zeroset: the only place that exits the process.
 
 mod args;
+mod backend;
 mod bench;
 mod command;
 mod console;
@@ -71,6 +72,8 @@ fn run(command: &Command, console: &Console) -> Result<(), Failure> {
         Command::Fields(args) => command::fields::run(args, console),
         Command::Compare(args) => command::compare::run(args, console),
         Command::Bench(args) => bench::run(args, console),
+        #[cfg(feature = "gpu")]
+        Command::Gpu(args) => command::gpu::run(args, console),
         Command::Init(args) => command::init::run(args, console),
         Command::Completions(args) => command::completions::completions(args, console),
         Command::Man(args) => command::completions::man(args, console),

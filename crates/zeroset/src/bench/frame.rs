@@ -103,7 +103,7 @@ pub(crate) fn frame(scene: &Scene, threads: usize) -> Result<Frames, RenderError
 }
 
 /// How alike two planes are, with values limited to what a screen shows: 10 log10(1 / mean square), dB.
-fn psnr(a: &[f32], b: &[f32]) -> f64 {
+pub(crate) fn psnr(a: &[f32], b: &[f32]) -> f64 {
     let shown = |x: f32| f64::from(x.clamp(0.0, 1.0)).powf(1.0 / 2.2);
     let square = |(a, b): (&f32, &f32)| (shown(*a) - shown(*b)).powi(2);
     let mean = a.iter().zip(b).map(square).sum::<f64>() / a.len().max(1) as f64;

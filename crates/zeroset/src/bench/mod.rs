@@ -2,6 +2,8 @@
 
 mod eval;
 mod frame;
+#[cfg(feature = "gpu")]
+mod gpu;
 mod march;
 
 use crate::args::{Bench, Measure};
@@ -83,6 +85,18 @@ pub(crate) fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
                 Some(path) => loaded(path)?,
                 None => sphere_box_ground(),
             };
+            #[cfg(feature = "gpu")]
+            if let Some(renderer) = crate::backend::gpu(what.backend, what.adapter.as_deref())? {
+                let found = gpu::frame(&scene, usize::from(what.threads), &renderer);
+                let found = found.map_err(failed)?;
+                return console.print(&if what.json {
+                    json::line(&found)?
+                } else {
+                    found.text()
+                });
+            }
+            #[cfg(not(feature = "gpu"))]
+            crate::backend::refused(what.backend, what.adapter.as_deref())?;
             let found = frame::frame(&scene, usize::from(what.threads)).map_err(failed)?;
             if what.json {
                 return console.print(&json::line(&found)?);

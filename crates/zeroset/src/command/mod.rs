@@ -6,5 +6,7 @@ pub(crate) mod completions;
 pub(crate) mod expand;
 pub(crate) mod export;
 pub(crate) mod fields;
+#[cfg(feature = "gpu")]
+pub(crate) mod gpu;
 pub(crate) mod init;
 pub(crate) mod slice;

@@ -3,6 +3,7 @@
 use super::summary::{Evaluations, Summary};
 use super::target::{Container, default_name, numbered};
 use crate::args::Render;
+use crate::backend::{Engine, Used};
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
 use crate::json;
@@ -15,16 +16,15 @@ use zeroset_output::format::{Notes, exr, png};
 use zeroset_output::view::View;
 use zeroset_scene::film::Plane;
 use zeroset_scene::load::{Loaded, Options};
-use zeroset_scene::render::{Frame, Observer, Renderer};
+use zeroset_scene::render::{Frame, Observer};
 use zeroset_scene::scene::Scene;
-use zeroset_trace::CpuRenderer;
 
 /// What the flags ask for.
 pub(crate) struct Job<'a> {
     pub(crate) args: &'a Render,
     pub(crate) console: &'a Console,
     pub(crate) options: Options,
-    renderer: CpuRenderer,
+    engine: Engine<'a>,
 }
 
 impl<'a> Job<'a> {
@@ -41,12 +41,17 @@ impl<'a> Job<'a> {
                 help,
             ));
         }
-        let renderer = CpuRenderer::new(args.threads.map(usize::from))?;
+        let engine = Engine::new(
+            args.backend,
+            args.adapter.as_deref(),
+            args.threads.map(usize::from),
+            console,
+        )?;
         Ok(Job {
             args,
             console,
             options,
-            renderer,
+            engine,
         })
     }
 
@@ -80,9 +85,10 @@ impl<'a> Job<'a> {
             bar: self.console.bar(label),
             cancelled,
         };
-        let rendered = self.renderer.render(&scene, &progress);
+        let restart = || progress.bar.reset();
+        let rendered = self.engine.render(&scene, &progress, &restart);
         progress.bar.finish_and_clear();
-        let rendered = rendered?;
+        let (rendered, used) = rendered?;
         self.write(&path, &scene, options, &rendered)?;
         self.report(
             &path,
@@ -90,6 +96,7 @@ impl<'a> Job<'a> {
             options,
             frame.map(|(number, _)| number),
             &rendered,
+            &used,
         )
     }
 
@@ -141,6 +148,7 @@ impl<'a> Job<'a> {
         options: &Options,
         frame: Option<u32>,
         rendered: &Frame,
+        used: &Used,
     ) -> Result<(), Failure> {
         let statistics = &rendered.statistics;
         let rays = statistics.rays.max(1) as f64;
@@ -154,6 +162,8 @@ impl<'a> Job<'a> {
             time: options.time,
             set: &options.set,
             seconds: statistics.seconds,
+            backend: used.backend(),
+            adapter: used.adapter(),
             threads: statistics.threads,
             rays: statistics.rays,
             hits: statistics.hits,

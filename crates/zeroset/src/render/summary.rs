@@ -22,6 +22,10 @@ pub(crate) struct Summary<'a> {
     pub(crate) set: &'a BTreeMap<String, String>,
     /// Rendering, seconds.
     pub(crate) seconds: f64,
+    /// What rendered it: cpu or gpu.
+    pub(crate) backend: &'static str,
+    /// The GPU's name.
+    pub(crate) adapter: Option<&'a str>,
     pub(crate) threads: usize,
     pub(crate) rays: u64,
     pub(crate) hits: u64,
@@ -61,8 +65,13 @@ impl Evaluations {
 impl Summary<'_> {
     /// For a person, on one line.
     pub(crate) fn line(&self) -> String {
+        let by = match (self.adapter, self.threads) {
+            (Some(adapter), _) => adapter.to_owned(),
+            (None, 1) => "1 thread".to_owned(),
+            (None, threads) => format!("{threads} threads"),
+        };
         format!(
-            "{}: {}x{}, {} rays in {:.3} s ({} rays/s), {:.1} evaluations a ray, {} thread{}",
+            "{}: {}x{}, {} rays in {:.3} s ({} rays/s), {:.1} evaluations a ray, {by}",
             self.file,
             self.width,
             self.height,
@@ -70,8 +79,6 @@ impl Summary<'_> {
             self.seconds,
             short(self.rays_per_second),
             self.evaluations_per_ray,
-            self.threads,
-            if self.threads == 1 { "" } else { "s" },
         )
     }
 }

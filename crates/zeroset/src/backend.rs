@@ -1,0 +1,176 @@
+//! What renders: the CPU, the GPU, or the CPU where the GPU fails.
+
+use crate::console::Console;
+use crate::failure::{Exit, Failure};
+use clap::ValueEnum;
+use std::cell::OnceCell;
+#[cfg(feature = "gpu")]
+use std::cell::RefCell;
+#[cfg(feature = "gpu")]
+use zeroset_gpu::{Choice, GpuRenderer};
+use zeroset_scene::render::{Frame, Observer, RenderError, Renderer};
+use zeroset_scene::scene::Scene;
+use zeroset_trace::CpuRenderer;
+
+/// Which renderer is asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Backend {
+    /// The GPU if there is a real one and it works, else the CPU
+    #[default]
+    Auto,
+    /// The CPU
+    Cpu,
+    /// The GPU; software that stands for one, if there is nothing else
+    Gpu,
+}
+
+/// What rendered a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Used {
+    /// The CPU.
+    Cpu,
+    /// A GPU, with its name.
+    #[cfg(feature = "gpu")]
+    Gpu(String),
+}
+
+impl Used {
+    /// Its name in JSON.
+    pub(crate) fn backend(&self) -> &'static str {
+        match self {
+            Used::Cpu => "cpu",
+            #[cfg(feature = "gpu")]
+            Used::Gpu(_) => "gpu",
+        }
+    }
+
+    /// The GPU's name.
+    pub(crate) fn adapter(&self) -> Option<&str> {
+        match self {
+            Used::Cpu => None,
+            #[cfg(feature = "gpu")]
+            Used::Gpu(name) => Some(name),
+        }
+    }
+}
+
+/// The renderer that was asked for.
+pub(crate) struct Engine<'a> {
+    console: &'a Console,
+    threads: Option<usize>,
+    /// Made when it is needed.
+    cpu: OnceCell<CpuRenderer>,
+    #[cfg(feature = "gpu")]
+    gpu: RefCell<Option<GpuRenderer>>,
+    /// Whether the CPU stands in for a GPU that fails.
+    #[cfg(feature = "gpu")]
+    falls_back: bool,
+}
+
+impl<'a> Engine<'a> {
+    /// Looks for what is asked for. `adapter` is a part of a GPU's name.
+    pub(crate) fn new(
+        backend: Backend,
+        adapter: Option<&str>,
+        threads: Option<usize>,
+        console: &'a Console,
+    ) -> Result<Engine<'a>, Failure> {
+        #[cfg(feature = "gpu")]
+        let gpu = gpu(backend, adapter)?;
+        #[cfg(not(feature = "gpu"))]
+        refused(backend, adapter)?;
+        let engine = Engine {
+            console,
+            threads,
+            cpu: OnceCell::new(),
+            #[cfg(feature = "gpu")]
+            gpu: RefCell::new(gpu),
+            #[cfg(feature = "gpu")]
+            falls_back: backend == Backend::Auto && adapter.is_none(),
+        };
+        if backend == Backend::Cpu {
+            // a wrong number of threads is told before anything is loaded
+            engine.cpu()?;
+        }
+        Ok(engine)
+    }
+
+    /// Renders. Where the GPU fails and the CPU may stand in, says so, calls `restart` and begins anew.
+    pub(crate) fn render(
+        &self,
+        scene: &Scene,
+        observer: &dyn Observer,
+        restart: &dyn Fn(),
+    ) -> Result<(Frame, Used), RenderError> {
+        #[cfg(feature = "gpu")]
+        {
+            let mut gpu = self.gpu.borrow_mut();
+            if let Some(renderer) = &*gpu {
+                match renderer.render(scene, observer) {
+                    Err(error @ RenderError::Device { .. }) if self.falls_back => {
+                        self.console
+                            .note(format_args!("{error}\nRendering on the CPU."));
+                        *gpu = None;
+                        restart();
+                    }
+                    Ok(frame) => return Ok((frame, Used::Gpu(renderer.adapter().title()))),
+                    Err(error) => return Err(error),
+                }
+            }
+        }
+        #[cfg(not(feature = "gpu"))]
+        let _ = (restart, self.console);
+        Ok((self.cpu()?.render(scene, observer)?, Used::Cpu))
+    }
+
+    fn cpu(&self) -> Result<&CpuRenderer, RenderError> {
+        if let Some(renderer) = self.cpu.get() {
+            return Ok(renderer);
+        }
+        let renderer = CpuRenderer::new(self.threads)?;
+        Ok(self.cpu.get_or_init(|| renderer))
+    }
+}
+
+/// The GPU that is asked for, if one is; a failure where one must be there and is not.
+#[cfg(feature = "gpu")]
+pub(crate) fn gpu(backend: Backend, adapter: Option<&str>) -> Result<Option<GpuRenderer>, Failure> {
+    let choice = match (backend, adapter) {
+        (Backend::Cpu, None) => return Ok(None),
+        (Backend::Cpu, Some(_)) => {
+            let help = "leave out --adapter, or ask for --backend gpu";
+            return Err(Failure::with_help(
+                Exit::Usage,
+                "the CPU has no adapter",
+                help,
+            ));
+        }
+        (_, Some(name)) => Choice::Named(name.to_owned()),
+        (Backend::Auto, None) => Choice::Auto,
+        (Backend::Gpu, None) => Choice::Any,
+    };
+    match (GpuRenderer::new(&choice), choice) {
+        (Ok(renderer), _) => Ok(Some(renderer)),
+        (Err(error), Choice::Auto) => {
+            tracing::debug!("rendering on the CPU: {error}");
+            Ok(None)
+        }
+        (Err(error), _) => Err(match error.advice() {
+            Some(advice) => Failure::with_help(Exit::Job, error.to_string(), advice),
+            None => Failure::new(Exit::Job, error.to_string()),
+        }),
+    }
+}
+
+/// A failure where a GPU is asked for.
+#[cfg(not(feature = "gpu"))]
+pub(crate) fn refused(backend: Backend, adapter: Option<&str>) -> Result<(), Failure> {
+    if backend == Backend::Gpu || adapter.is_some() {
+        return Err(Failure::with_help(
+            Exit::Job,
+            "this zeroset was built without the GPU's renderer",
+            "build it with the feature `gpu`, or leave out --backend and --adapter",
+        ));
+    }
+    Ok(())
+}
