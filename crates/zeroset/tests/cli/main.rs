@@ -1,5 +1,6 @@
 //! The command line from outside: exit codes, what goes to which stream, and what happens to files.
 
+mod backend;
 mod compare;
 mod export;
 mod frames;
