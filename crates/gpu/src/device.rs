@@ -5,12 +5,16 @@ use crate::error::GpuError;
 use crate::fault::Faults;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use wgpu::{BufferUsages, ErrorFilter, Features, PollError, PollType, SubmissionIndex};
+use zeroset_scene::render::RenderError;
 
-/// A device that does not finish one submission in this time is given up. Submissions are made to take milliseconds; the
-/// first ones of a shader may include its compilation.
-const PATIENCE: Duration = Duration::from_secs(30);
+/// A device that does not finish one submission in this time is given up. Submissions are made to take milliseconds.
+const PATIENCE: Duration = Duration::from_secs(20);
+/// As long as this where a driver may be compiling.
+const COMPILING: Duration = Duration::from_secs(180);
+/// Who waits is asked whether to stop this often.
+const LOOK: Duration = Duration::from_millis(50);
 
 /// An opened GPU.
 pub struct Gpu {
@@ -212,33 +216,41 @@ impl Gpu {
     }
 
     /// Waits until a submission is done, and its buffers are mapped. A device that does not answer counts as lost.
-    pub(crate) fn wait(&self, submission: &SubmissionIndex) -> Result<(), GpuError> {
-        self.wait_for(submission, PATIENCE)
-    }
-
-    pub(crate) fn wait_for(
+    ///
+    /// # Errors
+    /// The device is lost, or `stop` says that nobody waits any more; the submission is then still on its way.
+    pub(crate) fn wait(
         &self,
         submission: &SubmissionIndex,
-        patience: Duration,
+        compiles: bool,
+        stop: &dyn Fn() -> bool,
     ) -> Result<(), GpuError> {
-        let wait = PollType::Wait {
-            submission_index: Some(submission.clone()),
-            timeout: Some(patience),
-        };
-        // wgpu panics where the driver reports the loss of the device while it is waited for
-        match catch_unwind(AssertUnwindSafe(|| self.device.poll(wait))) {
-            Ok(Ok(_)) => {}
-            Ok(Err(PollError::Timeout)) => {
-                let seconds = patience.as_secs_f32();
-                self.status
-                    .lose(&format!("it did not answer for {seconds} s"));
+        let patience = if compiles { COMPILING } else { PATIENCE };
+        let began = Instant::now();
+        loop {
+            let wait = PollType::Wait {
+                submission_index: Some(submission.clone()),
+                timeout: Some(LOOK),
+            };
+            // wgpu panics where the driver reports the loss of the device while it is waited for
+            match catch_unwind(AssertUnwindSafe(|| self.device.poll(wait))) {
+                Ok(Ok(_)) => return self.check(),
+                Ok(Err(PollError::Timeout)) if stop() => {
+                    return Err(GpuError::Scene(RenderError::Cancelled));
+                }
+                Ok(Err(PollError::Timeout)) if began.elapsed() < patience => self.check()?,
+                Ok(Err(PollError::Timeout)) => {
+                    let seconds = patience.as_secs();
+                    self.status
+                        .lose(&format!("it did not answer for {seconds} s"));
+                }
+                Ok(Err(error)) => self.status.lose(&error.to_string()),
+                Err(_) => self
+                    .status
+                    .lose("the driver failed while it was waited for"),
             }
-            Ok(Err(error)) => self.status.lose(&error.to_string()),
-            Err(_) => self
-                .status
-                .lose("the driver failed while it was waited for"),
+            self.check()?;
         }
-        self.check()
     }
 }
 

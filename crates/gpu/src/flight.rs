@@ -31,6 +31,14 @@ pub(crate) struct Dispatch {
     pub(crate) seconds: f64,
 }
 
+/// Who is told of finished dispatches, and asked whether to go on waiting.
+pub(crate) trait Watcher {
+    /// Takes in what a dispatch took.
+    fn take(&mut self, dispatch: Dispatch);
+    /// Whether to stop waiting.
+    fn stops(&self) -> bool;
+}
+
 /// What shaders are dispatched with.
 pub(crate) struct Equipment<'a> {
     pub(crate) pipelines: &'a Pipelines,
@@ -49,6 +57,8 @@ struct Flown {
     began: Instant,
     dispatches: Vec<Dispatch>,
     stamps: Option<Stamps>,
+    /// Whether the driver may be compiling.
+    compiles: bool,
 }
 
 /// The queue of a device, as far as rendering is concerned.
@@ -65,6 +75,8 @@ pub(crate) struct Flight {
     /// When the latest submission that was waited for was done.
     last_done: Option<Instant>,
     pub(crate) submissions: u32,
+    /// Whether what is submitted may make the driver compile.
+    pub(crate) compiles: bool,
 }
 
 impl Flight {
@@ -80,6 +92,7 @@ impl Flight {
             spare: Vec::new(),
             last_done: None,
             submissions: 0,
+            compiles: false,
         })
     }
 
@@ -165,8 +178,8 @@ impl Flight {
         Ok(())
     }
 
-    /// Submits what is recorded, if anything, and tells `done` of submissions that had to be waited for.
-    pub(crate) fn flush(&mut self, done: &mut dyn FnMut(Dispatch)) -> Result<(), GpuError> {
+    /// Submits what is recorded, if anything, and tells `watcher` of submissions that had to be waited for.
+    pub(crate) fn flush(&mut self, watcher: &mut dyn Watcher) -> Result<(), GpuError> {
         let Some(mut encoder) = self.encoder.take() else {
             return Ok(());
         };
@@ -195,36 +208,41 @@ impl Flight {
             began,
             dispatches,
             stamps,
+            compiles: self.compiles,
         });
         while self.flying.len() > AHEAD {
-            self.land(done)?;
+            self.land(watcher)?;
         }
         Ok(())
     }
 
     /// Submits what is recorded and waits for everything.
-    pub(crate) fn finish(&mut self, done: &mut dyn FnMut(Dispatch)) -> Result<(), GpuError> {
-        self.flush(done)?;
+    pub(crate) fn finish(&mut self, watcher: &mut dyn Watcher) -> Result<(), GpuError> {
+        self.flush(watcher)?;
         while !self.flying.is_empty() {
-            self.land(done)?;
+            self.land(watcher)?;
         }
         Ok(())
     }
 
     /// Forgets what is recorded, and waits for what is on its way.
-    pub(crate) fn drain(&mut self) -> Result<(), GpuError> {
+    pub(crate) fn drain(&mut self, watcher: &mut dyn Watcher) -> Result<(), GpuError> {
         self.encoder = None;
         self.open.clear();
         self.written.clear();
-        self.finish(&mut |_| {})
+        self.finish(watcher)
     }
 
     /// Waits for the oldest submission.
-    fn land(&mut self, done: &mut dyn FnMut(Dispatch)) -> Result<(), GpuError> {
+    fn land(&mut self, watcher: &mut dyn Watcher) -> Result<(), GpuError> {
+        let Some(flown) = self.flying.front() else {
+            return Ok(());
+        };
+        // what is not waited for to the end stays on its way
+        (self.gpu).wait(&flown.submission, flown.compiles, &|| watcher.stops())?;
         let Some(flown) = self.flying.pop_front() else {
             return Ok(());
         };
-        self.gpu.wait(&flown.submission)?;
         let now = Instant::now();
         // work begins when it is submitted or when the work before it is done
         let began = self.last_done.map_or(flown.began, |t| t.max(flown.began));
@@ -245,7 +263,7 @@ impl Flight {
                 }
                 _ => share,
             };
-            done(dispatch);
+            watcher.take(dispatch);
         }
         self.spare.extend(flown.stamps);
         Ok(())

