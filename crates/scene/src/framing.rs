@@ -59,8 +59,10 @@ pub(crate) fn axes_of(back: DVec3, up: DVec3) -> Option<DMat3> {
     Some(DMat3::from_cols(right, back.cross(right), back))
 }
 
-/// How far from the target the eye must stand to see the whole box, whose centre lies at `offset` from the target.
-fn fit(axes: &DMat3, offset: DVec3, half: DVec3, tangent: f64, aspect: f64) -> f64 {
+/// How far from the target the eye must stand to see the whole box, whose centre lies at `offset` from the target, with
+/// some room around it. `axes` are those of the camera, `tangent` is that of half its vertical field of view, `aspect` the
+/// picture's width over its height.
+pub fn fit(axes: &DMat3, offset: DVec3, half: DVec3, tangent: f64, aspect: f64) -> f64 {
     let corner = |i: usize| {
         let sign = |k: usize| if i >> k & 1 == 0 { -1.0 } else { 1.0 };
         offset + half * DVec3::new(sign(0), sign(1), sign(2))

@@ -1,9 +1,11 @@
 //! The scene as a whole.
 
 use crate::camera::Camera;
+use crate::draft::finite_bounds;
 use crate::light::{Light, Sky};
 use crate::material::Material;
 use crate::settings::{Occlusion, Settings};
+use zeroset_field::bounds::Aabb;
 use zeroset_field::catalogue::entries::Catalogue;
 use zeroset_field::field::{Field, FieldError, Paint};
 
@@ -42,6 +44,11 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// The box of all that has an end; what goes on for ever is left out. `None` where nothing is left.
+    pub fn finite_bounds(&self) -> Option<Aabb> {
+        finite_bounds(self.objects.iter().map(|o| o.field.facts().bounds))
+    }
+
     /// All objects as one field: their union, each painted with its material (where no part of it is painted already) and
     /// its number. A scene without objects has no field.
     ///

@@ -54,6 +54,9 @@ pub(crate) struct Global {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    /// Open a window on a scene: fly through it, move its sliders, compare methods. `zeroset SCENE` does the same
+    #[cfg(feature = "viewer")]
+    View(View),
     /// Render a scene to a picture
     Render(Render),
     /// Check a scene: its objects, their bounds, what is proven about their distances
@@ -149,6 +152,16 @@ pub(crate) struct Render {
     /// Print what was rendered and what it took as JSON, one line a picture
     #[arg(long)]
     pub json: bool,
+}
+
+#[cfg(feature = "viewer")]
+#[derive(Debug, Args)]
+pub(crate) struct View {
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Threads that render. Default: all cores
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
 }
 
 #[derive(Debug, Args)]

@@ -77,14 +77,7 @@ impl Console {
         } else {
             GraphicalTheme::unicode_nocolor()
         };
-        let handler = GraphicalReportHandler::new_themed(theme)
-            .with_width(100)
-            .with_links(false);
-        let mut text = String::new();
-        if handler.render_report(&mut text, report).is_err() {
-            text = report.to_string();
-        }
-        let _ = writeln!(io::stderr(), "{}", text.trim_end());
+        let _ = writeln!(io::stderr(), "{}", themed(theme, report));
     }
 
     /// A result, on standard output.
@@ -124,6 +117,23 @@ impl Console {
         bar.enable_steady_tick(Duration::from_millis(100));
         bar
     }
+}
+
+/// What went wrong as [`Console::report`] says it, without colours.
+#[cfg(feature = "viewer")]
+pub(crate) fn plain_report(report: &dyn Diagnostic) -> String {
+    themed(GraphicalTheme::unicode_nocolor(), report)
+}
+
+fn themed(theme: GraphicalTheme, report: &dyn Diagnostic) -> String {
+    let handler = GraphicalReportHandler::new_themed(theme)
+        .with_width(100)
+        .with_links(false);
+    let mut text = String::new();
+    if handler.render_report(&mut text, report).is_err() {
+        text = report.to_string();
+    }
+    text.trim_end().to_owned()
 }
 
 /// A count in three digits: 950, 12.3k, 4.56M.

@@ -30,9 +30,19 @@ fn main() -> ExitCode {
         Colour::Always => ColorChoice::Always,
         Colour::Never => ColorChoice::Never,
     };
-    let parsed = CommandLine::command()
-        .color(choice)
-        .try_get_matches_from(arguments);
+    let parse = |arguments: &[OsString]| {
+        let command = CommandLine::command().color(choice);
+        command.try_get_matches_from(arguments)
+    };
+    let mut parsed = parse(&arguments);
+    if cfg!(feature = "viewer")
+        && let Some(place) = parsed.as_ref().err().and_then(scene_as_command)
+        && let Some(place) = arguments.iter().position(|a| *a == *place)
+    {
+        let mut view = arguments.clone();
+        view.insert(place, "view".into());
+        parsed = parse(&view);
+    }
     let line = match parsed.and_then(|matches| CommandLine::from_arg_matches(&matches)) {
         Ok(line) => line,
         Err(error) => {
@@ -64,6 +74,8 @@ fn main() -> ExitCode {
 
 fn run(command: &Command, console: &Console) -> Result<(), Failure> {
     match command {
+        #[cfg(feature = "viewer")]
+        Command::View(args) => command::view::run(args),
         Command::Render(args) => render::run(args, console),
         Command::Check(args) => command::check::run(args, console),
         Command::Expand(args) => command::expand::run(args, console),

@@ -17,6 +17,19 @@ pub(crate) struct Legend {
     nothing: Option<&'static str>,
 }
 
+/// What the colours of a view mean, for somebody who draws it.
+#[derive(Clone, Debug)]
+pub struct Key {
+    /// What is shown.
+    pub title: &'static str,
+    /// Places from 0 to 1 with what is written at them, ascending.
+    pub ticks: Vec<(f32, String)>,
+    /// The sRGB colour at a place.
+    pub colours: fn(f32) -> [f32; 3],
+    /// The word for pixels that have no number.
+    pub nothing: Option<&'static str>,
+}
+
 impl Legend {
     /// A legend over a scale. `nothing` is the word for pixels that have no number.
     pub(crate) fn new(
@@ -36,6 +49,16 @@ impl Legend {
     /// The colour of a number.
     pub(crate) fn colour(&self, x: f32) -> [f32; 3] {
         (self.colours)(self.scale.place(x))
+    }
+
+    /// The same for somebody else to draw.
+    pub(crate) fn key(&self, most: usize) -> Key {
+        Key {
+            title: self.title,
+            ticks: self.scale.ticks(most),
+            colours: self.colours,
+            nothing: self.nothing,
+        }
     }
 
     /// A picture with this legend at its right side.

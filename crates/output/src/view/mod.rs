@@ -11,6 +11,7 @@ mod text;
 
 use crate::picture::Picture;
 use colorous::Gradient;
+pub use legend::Key;
 pub(crate) use legend::Legend;
 pub(crate) use scale::Scale;
 use zeroset_scene::film::{Film, Plane};
@@ -53,25 +54,9 @@ impl View<'_> {
             Plane::Coverage | Plane::Occlusion | Plane::Shadow => {
                 at_pixels(film, |i| [plane[i].clamp(0.0, 1.0); 3])
             }
-            Plane::Depth => {
-                let scale = Scale::between(plane.iter().copied());
-                let legend = Legend::new("depth", scale, near_is_bright, Some("none"));
-                self.mapped(film, legend, |i| plane[i].is_finite())
-            }
-            Plane::Steps => {
-                let scale = Scale::from_zero(plane.iter().copied());
-                self.mapped(
-                    film,
-                    Legend::new("steps", scale, |t| map(colorous::VIRIDIS, t), None),
-                    |_| true,
-                )
-            }
-            Plane::Residual => {
-                let hits = (0..plane.len()).filter(|&i| is_hit(i)).map(|i| plane[i]);
-                let scale = Scale::decades(hits);
-                let legend = Legend::new("|f|", scale, |t| map(colorous::MAGMA, t), Some("none"));
-                self.mapped(film, legend, is_hit)
-            }
+            Plane::Depth => self.mapped(film, |i| plane[i].is_finite()),
+            Plane::Steps => self.mapped(film, |_| true),
+            Plane::Residual => self.mapped(film, is_hit),
             Plane::Object => {
                 let picture = at_pixels(film, |i| object_colour(plane[i]));
                 if self.legend {
@@ -83,9 +68,40 @@ impl View<'_> {
         }
     }
 
-    /// The plane through a legend's colours, with the legend beside it.
-    fn mapped(&self, film: &Film, legend: Legend, shown: impl Fn(usize) -> bool) -> Picture {
+    /// What the colours of this view mean, with at most about `most` ticks; `None` where they are no numbers.
+    pub fn key(&self, film: &Film, most: usize) -> Option<Key> {
+        self.legend_of(film).map(|legend| legend.key(most))
+    }
+
+    fn legend_of(&self, film: &Film) -> Option<Legend> {
         let plane = film.plane(self.plane);
+        match self.plane {
+            Plane::Depth => {
+                let scale = Scale::between(plane.iter().copied());
+                Some(Legend::new("depth", scale, near_is_bright, Some("none")))
+            }
+            Plane::Steps => {
+                let scale = Scale::from_zero(plane.iter().copied());
+                let colours = |t| map(colorous::VIRIDIS, t);
+                Some(Legend::new("steps", scale, colours, None))
+            }
+            Plane::Residual => {
+                let depth = film.plane(Plane::Depth);
+                let is_hit = |i: &usize| depth.get(*i).is_none_or(|d| d.is_finite());
+                let scale = Scale::decades((0..plane.len()).filter(is_hit).map(|i| plane[i]));
+                let colours = |t| map(colorous::MAGMA, t);
+                Some(Legend::new("|f|", scale, colours, Some("none")))
+            }
+            _ => None,
+        }
+    }
+
+    /// The plane through its legend's colours, with the legend beside it.
+    fn mapped(&self, film: &Film, shown: impl Fn(usize) -> bool) -> Picture {
+        let plane = film.plane(self.plane);
+        let Some(legend) = self.legend_of(film) else {
+            return Picture::filled(film.width(), film.height(), NOTHING);
+        };
         let picture = at_pixels(film, |i| {
             if shown(i) {
                 legend.colour(plane[i])

@@ -1,6 +1,6 @@
 //! Sections: a field on a plane, as Munini 2021, fig. 1 to 6 and Tomczak 2012, fig. 3.8 draw it.
 
-use super::legend::Legend;
+use super::legend::{Key, Legend};
 use super::map;
 use super::scale::Scale;
 use crate::picture::Picture;
@@ -34,17 +34,20 @@ impl Section {
             .iter()
             .filter(|v| v.is_finite())
             .fold(0.0f32, |m, v| m.max(v.abs()));
-        let farthest = if farthest > 0.0 { farthest } else { 1.0 };
-        let scale = Scale::Linear(-farthest, farthest);
-        let explained = Legend::new(
-            "distance",
-            scale,
-            |t| map(colorous::RED_BLUE, 1.0 - t),
-            None,
-        );
-        let spacing = scale.step(24);
+        let picture = self.drawn(farthest);
+        if legend {
+            explained(farthest).beside(picture)
+        } else {
+            picture
+        }
+    }
+
+    /// Draws it without a legend, with the strongest colours at a distance of `farthest`.
+    pub fn drawn(&self, farthest: f32) -> Picture {
+        let explained = explained(farthest);
+        let spacing = scale(farthest).step(24);
         let mut at = 0;
-        let picture = Picture::from_fn(self.width, self.height, |_, _| {
+        Picture::from_fn(self.width, self.height, |_, _| {
             let (value, slope) = (self.values[at], self.slopes[at]);
             at += 1;
             let colour = explained.colour(value);
@@ -52,12 +55,12 @@ impl Section {
                 + 0.45 * self.ink(from_line(value, spacing), value, slope, LINE);
             let ink = ink.clamp(0.0, 1.0);
             [0, 1, 2].map(|k| colour[k] + ink * (INK[k] - colour[k]))
-        });
-        if legend {
-            explained.beside(picture)
-        } else {
-            picture
-        }
+        })
+    }
+
+    /// What the colours of [`Section::drawn`] mean, with at most about `most` ticks.
+    pub fn key(farthest: f32, most: usize) -> Key {
+        explained(farthest).key(most)
     }
 
     /// How much of a pixel a line covers whose field value is `offset` away, where the field is `value` and grows by
@@ -71,6 +74,17 @@ impl Section {
             0.0
         }
     }
+}
+
+/// The scale of a section; a field that is zero everywhere has one too.
+fn scale(farthest: f32) -> Scale {
+    let farthest = if farthest > 0.0 { farthest } else { 1.0 };
+    Scale::Linear(-farthest, farthest)
+}
+
+fn explained(farthest: f32) -> Legend {
+    let colours = |t| map(colorous::RED_BLUE, 1.0 - t);
+    Legend::new("distance", scale(farthest), colours, None)
 }
 
 /// How far a value is from the nearest multiple of the spacing.

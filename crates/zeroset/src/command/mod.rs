@@ -10,3 +10,5 @@ pub(crate) mod fields;
 pub(crate) mod gpu;
 pub(crate) mod init;
 pub(crate) mod slice;
+#[cfg(feature = "viewer")]
+pub(crate) mod view;

@@ -37,12 +37,32 @@ fn no_command_prints_help_and_is_no_success() {
     assert!(ended.err.contains("Usage: zeroset") && ended.out.is_empty());
 }
 
+#[cfg(not(feature = "viewer"))]
 #[test]
 fn a_scene_without_a_command_names_the_command() {
     let folder = Folder::with(BALL);
     folder.bad("scene.star", 2, &["zeroset render scene.star"]);
     folder.bad("some.json", 2, &["zeroset render some.json"]);
     folder.bad("rende", 2, &["render"]);
+}
+
+/// Without a screen, so that no window opens.
+#[cfg(all(feature = "viewer", target_os = "linux"))]
+#[test]
+fn a_scene_without_a_command_is_viewed() {
+    let folder = Folder::with(BALL);
+    folder.bad("rende", 2, &["render"]);
+    folder.bad("none.star", 4, &["none.star"]);
+    for arguments in ["scene.star", "--color never scene.star --time 2", "view scene.star"] {
+        let mut command = folder.command(arguments);
+        for screen in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+            command.env_remove(screen);
+        }
+        let output = command.output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{arguments}: {said}");
+        assert!(said.contains("no screen") && said.contains("zeroset render"), "{said}");
+    }
 }
 
 #[test]

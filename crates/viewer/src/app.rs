@@ -1,0 +1,354 @@
+//! The window: the picture, the panels around it, and the keys.
+
+use crate::engine::{Engine, Event};
+use crate::launch::Open;
+use crate::loader::Loader;
+use crate::methods::Choice;
+use crate::panel;
+use crate::panel::set_comparison;
+use crate::rig::Side;
+use crate::save;
+use crate::session::Session;
+use crate::stage::{Stage, cards, flight};
+use crate::style::{self, GAP, PANEL, Palette};
+use crate::widget::section;
+use eframe::egui::{
+    Align, Align2, Button, CentralPanel, Context, Frame, Id, Key, Layout, Margin, Modal, Modifiers,
+    Panel, RichText, ScrollArea, TextEdit, Theme, Ui,
+};
+use glam::DVec3;
+use std::time::{Duration, Instant};
+use zeroset_scene::film::Plane;
+
+/// How long a note is shown.
+const NOTE: Duration = Duration::from_secs(5);
+
+/// The window.
+pub struct App {
+    /// What it is about.
+    pub session: Session,
+    engine: Option<Engine>,
+    loader: Option<Loader>,
+    stage: Stage,
+    is_panel_open: bool,
+    is_help_open: bool,
+    /// The name that a picture is to be saved under, while that is asked for.
+    saving: Option<String>,
+    /// What was done, and when it was said.
+    note: Option<(String, Instant)>,
+}
+
+impl App {
+    /// A window without threads behind it: what it shows is put into its session.
+    pub fn new(ctx: &Context, session: Session) -> App {
+        style::apply(ctx);
+        App {
+            session,
+            engine: None,
+            loader: None,
+            stage: Stage::default(),
+            is_panel_open: true,
+            is_help_open: false,
+            saving: None,
+            note: None,
+        }
+    }
+
+    /// A window with the threads that load and render.
+    ///
+    /// # Errors
+    /// The system gives no threads.
+    pub(crate) fn start(ctx: &Context, open: Open) -> std::io::Result<App> {
+        let session = Session::new(open.scene.clone(), open.options.clone());
+        let wake = || {
+            let ctx = ctx.clone();
+            move || ctx.request_repaint()
+        };
+        let loader = Loader::start(open.scene, open.options, open.explain, wake())?;
+        let engine = Engine::start(open.backend, wake())?;
+        Ok(App {
+            engine: Some(engine),
+            loader: Some(loader),
+            ..App::new(ctx, session)
+        })
+    }
+
+    /// Takes what the threads have done, and asks for what is wanted next.
+    fn exchange(&mut self, ctx: &Context) {
+        if let Some(loader) = &self.loader {
+            while let Some(outcome) = loader.take() {
+                if let Err(report) = &outcome.result {
+                    tracing::debug!("{report}");
+                }
+                self.session.absorb(outcome);
+            }
+            if let Some(options) = self.session.to_load() {
+                loader.ask(options);
+            }
+        }
+        let mut has_news = false;
+        if let Some(engine) = &self.engine {
+            while let Some(event) = engine.take() {
+                match event {
+                    Event::Ready(name) => self.session.backend = Some(name),
+                    Event::Failed(reason) => self.session.trouble = Some(reason),
+                    Event::Shown(shown) => {
+                        self.session.shown = Some(shown);
+                        has_news = true;
+                    }
+                }
+            }
+            if !engine.is_alive() && self.session.trouble.is_none() {
+                self.session.trouble = Some("the renderer broke down; please report this scene as a bug".into());
+            }
+        }
+        if has_news {
+            self.stage.load(ctx, &self.session);
+        }
+    }
+
+    /// Asks for the picture, if it is another one than before.
+    fn ask(&mut self, ctx: &Context) {
+        let size = self.stage.pixels(ctx);
+        if let (Some(engine), true) = (&self.engine, self.stage.rect.is_some())
+            && let Some(request) = self.session.to_render(size)
+        {
+            engine.ask(request);
+        }
+    }
+
+    /// Draws the window.
+    pub fn show(&mut self, ui: &mut Ui) {
+        let ctx = ui.ctx().clone();
+        self.exchange(&ctx);
+        self.keys(&ctx);
+        self.fly(&ctx);
+        let palette = Palette::of(ui.visuals());
+        let bar = |margin: Margin| Frame::new().fill(ui.visuals().panel_fill).inner_margin(margin);
+        let (wide, thin) = (bar(Margin::symmetric(14, 8)), bar(Margin::symmetric(14, 4)));
+        let side = bar(Margin::symmetric(14, 10));
+        Panel::top("top").frame(wide).show(ui, |ui| self.top(ui));
+        Panel::bottom("status").frame(thin).show(ui, |ui| panel::status(ui, &self.session));
+        if self.session.is_animated() {
+            Panel::bottom("timeline").frame(wide).show(ui, |ui| panel::timeline(ui, &mut self.session));
+        }
+        if self.is_panel_open {
+            Panel::right("panel")
+                .frame(side)
+                .default_size(PANEL)
+                .size_range(PANEL..=520.0)
+                .show(ui, |ui| self.side(ui));
+        }
+        CentralPanel::default().frame(Frame::new().fill(palette.surround)).show(ui, |ui| {
+            self.stage.show(ui, &mut self.session);
+        });
+        if let Some(rect) = self.stage.rect {
+            cards(ui, &mut self.session, rect);
+        }
+        panel::help(&ctx, &mut self.is_help_open);
+        self.save_dialog(&ctx);
+        self.say(&ctx);
+        self.ask(&ctx);
+        if self.session.clock.is_playing {
+            ctx.request_repaint();
+        }
+    }
+
+    fn top(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            ui.label(RichText::new(self.session.name()).heading().strong());
+            let file = self.session.path.file_name().unwrap_or_default().to_string_lossy();
+            ui.label(RichText::new(file).small().weak()).on_hover_text(self.session.path.display().to_string());
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                ui.spacing_mut().item_spacing.x = GAP;
+                ui.toggle_value(&mut self.is_panel_open, "Panel").on_hover_text("Shows or hides the panel (P).");
+                ui.toggle_value(&mut self.is_help_open, "Help").on_hover_text("Keys and mouse (? or F1).");
+                let dark = ui.visuals().dark_mode;
+                let (word, theme) = if dark { ("Light", Theme::Light) } else { ("Dark", Theme::Dark) };
+                if ui.button(word).on_hover_text("The other theme.").accessible_name("Change the theme").clicked() {
+                    ui.ctx().set_theme(theme);
+                }
+                if ui.button("Save…").on_hover_text("Saves the picture (Ctrl+S).").clicked() {
+                    self.saving = Some(save::default_name(&self.session));
+                }
+                let mut on = self.session.comparison.is_on;
+                ui.toggle_value(&mut self.session.is_sliced, "Slice").on_hover_text("A plane through the field (X).");
+                ui.toggle_value(&mut on, "Compare").on_hover_text("Two settings beside each other (C).");
+                set_comparison(&mut self.session, on);
+            });
+        });
+    }
+
+    fn side(&mut self, ui: &mut Ui) {
+        let size = self.stage.pixels(ui.ctx());
+        let session = &mut self.session;
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            ui.set_width(ui.available_width() - GAP);
+            if session.comparison.is_on {
+                section(ui, "Comparison", true, |ui| panel::comparison(ui, session));
+            }
+            if session.current.is_some() {
+                let has_parameters = !session.parameters().is_empty();
+                section(ui, "Parameters", has_parameters, |ui| panel::parameters(ui, session));
+            }
+            section(ui, "View", true, |ui| panel::view(ui, session));
+            panel::methods(ui, session);
+            ui.separator();
+            section(ui, "Plane through the field", session.is_sliced, |ui| panel::slice(ui, session));
+            section(ui, "Camera", false, |ui| panel::camera(ui, session, size));
+            if !session.comparison.is_on {
+                section(ui, "Comparison", false, |ui| panel::comparison(ui, session));
+            }
+        });
+    }
+
+    fn fly(&mut self, ctx: &Context) {
+        let way = flight(ctx);
+        if way != DVec3::ZERO {
+            let seconds = f64::from(ctx.input(|i| i.stable_dt)).min(0.1);
+            self.session.rig.fly(way, seconds);
+            self.session.is_free = true;
+            ctx.request_repaint();
+        }
+        if self.session.is_animated() {
+            // the first frame after a rest would be a long one
+            let seconds = f64::from(ctx.input(|i| i.unstable_dt)).min(0.25);
+            self.session.clock.advance(seconds);
+        } else {
+            self.session.clock.is_playing = false;
+        }
+    }
+
+    /// Keys that mean something wherever the focus is, except where text is written.
+    fn keys(&mut self, ctx: &Context) {
+        let pressed = |modifiers, key| ctx.input_mut(|i| i.consume_key(modifiers, key));
+        let none = Modifiers::NONE;
+        if pressed(none, Key::F1) {
+            self.is_help_open = !self.is_help_open;
+        }
+        if pressed(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::C) {
+            ctx.copy_text(self.session.rig.statement());
+            self.tell("The camera is on the clipboard.");
+        }
+        if pressed(Modifiers::COMMAND, Key::S) {
+            self.saving = Some(save::default_name(&self.session));
+        }
+        if self.saving.is_some() || ctx.text_edit_focused() {
+            return;
+        }
+        if pressed(none, Key::Escape) {
+            self.is_help_open = false;
+            self.session.picked = None;
+        }
+        if pressed(Modifiers::SHIFT, Key::Questionmark) || pressed(none, Key::Questionmark) {
+            self.is_help_open = !self.is_help_open;
+        }
+        for (key, near, far) in [
+            (Key::Num1, Side::Front, Side::Back),
+            (Key::Num3, Side::Right, Side::Left),
+            (Key::Num7, Side::Top, Side::Bottom),
+        ] {
+            for (modifiers, side) in [(Modifiers::COMMAND, far), (none, near)] {
+                if pressed(modifiers, key) {
+                    self.session.rig.look_from(side);
+                    self.session.is_free = true;
+                }
+            }
+        }
+        let session = &mut self.session;
+        if pressed(none, Key::F) {
+            session.frame_all(self.stage.pixels(ctx));
+        }
+        if pressed(none, Key::Home) {
+            session.reset_camera();
+        }
+        if pressed(none, Key::C) {
+            let on = !session.comparison.is_on;
+            set_comparison(session, on);
+        }
+        if pressed(none, Key::X) {
+            session.is_sliced = !session.is_sliced;
+        }
+        if pressed(none, Key::V) {
+            let plane = &mut session.edited().plane;
+            let all = Plane::methods();
+            *plane = all[(plane.place() + 1) % all.len()].make;
+        }
+        if pressed(none, Key::P) {
+            self.is_panel_open = !self.is_panel_open;
+        }
+        if session.is_animated() {
+            if ctx.memory(|m| m.focused().is_none()) && pressed(none, Key::Space) {
+                session.clock.toggle();
+            }
+            for (key, frames) in [(Key::Comma, -1), (Key::Period, 1)] {
+                if pressed(none, key) {
+                    session.clock.step(frames);
+                }
+            }
+        }
+    }
+
+    fn save_dialog(&mut self, ctx: &Context) {
+        let Some(name) = &mut self.saving else {
+            return;
+        };
+        let (mut is_done, mut is_left) = (false, false);
+        let modal = Modal::new(Id::unique("save")).show(ctx, |ui| {
+            ui.set_width(420.0);
+            ui.heading("Save the picture");
+            ui.weak("As it is shown now. The ending says how: .png, or .exr with all planes.");
+            ui.add_space(4.0);
+            let edit = TextEdit::singleline(name).desired_width(f32::INFINITY);
+            let edit = ui.add(edit).accessible_name("File name");
+            if edit.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter)) {
+                is_done = true;
+            }
+            ui.add_space(6.0);
+            ui.horizontal(|ui| {
+                is_done |= ui.add(Button::new("Save")).clicked();
+                is_left |= ui.button("Cancel").clicked();
+            });
+        });
+        if is_done {
+            let said = match save::save(&self.session, name) {
+                Ok(path) => format!("Saved {}", path.display()),
+                Err(reason) => format!("Not saved: {reason}"),
+            };
+            self.saving = None;
+            self.tell(said);
+        } else if is_left || modal.should_close() {
+            self.saving = None;
+        }
+    }
+
+    fn tell(&mut self, text: impl Into<String>) {
+        self.note = Some((text.into(), Instant::now()));
+    }
+
+    /// Shows a note for a while.
+    fn say(&mut self, ctx: &Context) {
+        let Some((text, since)) = &self.note else {
+            return;
+        };
+        let left = NOTE.saturating_sub(since.elapsed());
+        if left.is_zero() {
+            self.note = None;
+            return;
+        }
+        eframe::egui::Area::new(Id::unique("note"))
+            .anchor(Align2::CENTER_BOTTOM, [0.0, -60.0])
+            .interactable(false)
+            .show(ctx, |ui| {
+                let palette = Palette::of(ui.visuals());
+                panel::card(&palette).show(ui, |ui| ui.label(text));
+            });
+        ctx.request_repaint_after(left);
+    }
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+        self.show(ui);
+    }
+}

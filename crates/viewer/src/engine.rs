@@ -1,0 +1,467 @@
+//! The thread that renders: it takes the newest request, climbs the ladder, and never keeps the window waiting.
+
+use crate::develop::develop;
+use crate::ladder::{self, Rung, rungs};
+use crate::slice::{Cut, Slice};
+use eframe::egui::ColorImage;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Instant;
+use zeroset_output::view::section::Section;
+use zeroset_output::view::{Key, View};
+use zeroset_scene::camera::Camera;
+use zeroset_scene::film::{Film, Plane};
+use zeroset_scene::render::{Evaluations, Observer, RenderError, Renderer};
+use zeroset_scene::scene::Scene;
+use zeroset_scene::settings::{Settings, Shadow};
+use zeroset_trace::CpuRenderer;
+
+/// Numbers beside a bar of colours.
+const TICKS: usize = 6;
+
+/// What renders, and what it is called.
+pub struct Backend {
+    /// Its name, for the status bar.
+    pub name: String,
+    /// The renderer.
+    pub renderer: Box<dyn Renderer + Send>,
+}
+
+impl Backend {
+    /// The renderer on the CPU.
+    ///
+    /// # Errors
+    /// [`RenderError::Threads`] where the system does not give that many.
+    pub fn cpu(threads: Option<usize>) -> Result<Backend, RenderError> {
+        let renderer = CpuRenderer::new(threads)?;
+        let name = match renderer.threads() {
+            1 => "CPU, 1 thread".to_owned(),
+            n => format!("CPU, {n} threads"),
+        };
+        Ok(Backend {
+            name,
+            renderer: Box::new(renderer),
+        })
+    }
+}
+
+/// Makes the backend, on the thread that will use it.
+pub type MakeBackend = Box<dyn FnOnce() -> Result<Backend, RenderError> + Send>;
+
+/// How one side of the window shows the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// The methods.
+    pub settings: Settings,
+    /// The shadow of all lights; `None` where each light has its own.
+    pub shadow: Option<Shadow>,
+    /// Which plane of the film is seen.
+    pub plane: Plane,
+}
+
+impl Look {
+    /// Whether both take the same rays: what differs is only how they are shown.
+    fn has_rays_of(&self, other: &Look) -> bool {
+        let plain = |look: &Look| Look {
+            settings: Settings {
+                exposure: 0.0,
+                ..look.settings
+            },
+            plane: Plane::Colour,
+            ..*look
+        };
+        plain(self) == plain(other)
+    }
+}
+
+/// What the window wants to show.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// The scene; its camera and settings are replaced.
+    pub scene: Arc<Scene>,
+    /// Who looks.
+    pub camera: Camera,
+    /// Pixels of the picture.
+    pub size: [u32; 2],
+    /// How: one look, or two beside each other.
+    pub looks: Vec<Look>,
+    /// Whether to go on to 64 rays a pixel.
+    pub refine: bool,
+    /// A section through the field.
+    pub slice: Option<Slice>,
+}
+
+impl PartialEq for Request {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.scene, &other.scene)
+            && (self.camera, self.size, self.refine) == (other.camera, other.size, other.refine)
+            && self.looks == other.looks
+            && self.slice == other.slice
+    }
+}
+
+impl Request {
+    fn has_rays_of(&self, other: &Request) -> bool {
+        let looks = self.looks.iter().zip(&other.looks);
+        Arc::ptr_eq(&self.scene, &other.scene)
+            && (self.camera, self.size) == (other.camera, other.size)
+            && self.looks.len() == other.looks.len()
+            && looks.into_iter().all(|(a, b)| a.has_rays_of(b))
+    }
+
+    /// The scene as a look shows it.
+    fn scene_of(&self, look: &Look, rung: &Rung) -> Scene {
+        let mut scene = Scene::clone(&self.scene);
+        scene.camera = self.camera;
+        scene.settings = Settings {
+            size: rung.size,
+            antialias: rung.antialias,
+            ..look.settings
+        };
+        if let Some(shadow) = look.shadow {
+            for light in &mut scene.lights {
+                light.shadow = shadow;
+            }
+        }
+        scene
+    }
+}
+
+/// A look's picture.
+#[derive(Clone)]
+pub struct Exposed {
+    /// All planes.
+    pub film: Arc<Film>,
+    /// What the window shows.
+    pub image: Arc<ColorImage>,
+    /// What its colours mean, where they are numbers.
+    pub key: Option<Key>,
+}
+
+/// A picture of the ladder that is done.
+#[derive(Clone)]
+pub struct Shown {
+    /// What it shows.
+    pub request: Arc<Request>,
+    /// Which picture of the ladder it is.
+    pub rung: Rung,
+    /// One for each look.
+    pub sides: Vec<Exposed>,
+    /// Seconds that the rays took, for all looks.
+    pub seconds: f64,
+    /// Primary rays of all looks.
+    pub rays: u64,
+    /// Evaluations of the field, of all looks.
+    pub evaluations: Evaluations,
+    /// Whether it is the last one.
+    pub is_last: bool,
+}
+
+/// What the thread says.
+pub enum Event {
+    /// It renders with this.
+    Ready(String),
+    /// A picture is done.
+    Shown(Box<Shown>),
+    /// The scene cannot be rendered.
+    Failed(String),
+}
+
+/// What both threads know.
+struct Shared {
+    wanted: Mutex<Wanted>,
+    changed: Condvar,
+    /// Number of the newest request.
+    newest: AtomicU64,
+    ended: AtomicBool,
+}
+
+#[derive(Default)]
+struct Wanted {
+    request: Option<Request>,
+    ended: bool,
+}
+
+/// The window's end of the thread that renders.
+pub struct Engine {
+    shared: Arc<Shared>,
+    events: Receiver<Event>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Engine {
+    /// Starts the thread. `wake` is called whenever there is an event to take.
+    ///
+    /// # Errors
+    /// The system gives no thread.
+    pub fn start(
+        make: MakeBackend,
+        wake: impl Fn() + Send + Sync + 'static,
+    ) -> std::io::Result<Engine> {
+        let shared = Arc::new(Shared {
+            wanted: Mutex::default(),
+            changed: Condvar::new(),
+            newest: AtomicU64::new(0),
+            ended: AtomicBool::new(false),
+        });
+        let (tell, events) = channel();
+        let theirs = Arc::clone(&shared);
+        let thread = std::thread::Builder::new()
+            .name("engine".into())
+            .spawn(move || Worker::run(&theirs, make, &tell, &wake))?;
+        Ok(Engine {
+            shared,
+            events,
+            thread: Some(thread),
+        })
+    }
+
+    /// Asks for a picture. It takes the place of what was asked for before.
+    pub fn ask(&self, request: Request) {
+        let mut wanted = lock(&self.shared.wanted);
+        wanted.request = Some(request);
+        self.shared.newest.fetch_add(1, Ordering::Relaxed);
+        self.shared.changed.notify_one();
+    }
+
+    /// The next thing that happened, if any.
+    pub fn take(&self) -> Option<Event> {
+        self.events.try_recv().ok()
+    }
+
+    /// As [`Engine::take`], and waits for it.
+    pub fn wait(&self, most: std::time::Duration) -> Option<Event> {
+        self.events.recv_timeout(most).ok()
+    }
+
+    /// Whether the thread still runs.
+    pub fn is_alive(&self) -> bool {
+        self.thread.as_ref().is_some_and(|t| !t.is_finished())
+    }
+}
+
+impl Drop for Engine {
+    fn drop(&mut self) {
+        lock(&self.shared.wanted).ended = true;
+        self.shared.ended.store(true, Ordering::Relaxed);
+        self.shared.changed.notify_one();
+        if let Some(thread) = self.thread.take() {
+            // it has said what it had to say
+            let _ = thread.join();
+        }
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Ends a rendering when something newer is wanted.
+struct Impatient<'a> {
+    shared: &'a Shared,
+    /// The request that is being rendered; `None` where the picture is wanted whatever comes.
+    number: Option<u64>,
+}
+
+impl Observer for Impatient<'_> {
+    fn advance(&self, _rays: u64, _total: u64) {}
+
+    fn is_cancelled(&self) -> bool {
+        let is_old = |n| self.shared.newest.load(Ordering::Relaxed) != n;
+        self.shared.ended.load(Ordering::Relaxed) || self.number.is_some_and(is_old)
+    }
+}
+
+/// The rays of a picture that is done.
+struct Done {
+    request: Arc<Request>,
+    films: Vec<Arc<Film>>,
+    rung: Rung,
+    seconds: f64,
+    rays: u64,
+    evaluations: Evaluations,
+}
+
+/// The thread's side.
+struct Worker<'a> {
+    shared: &'a Shared,
+    backend: Backend,
+    tell: &'a Sender<Event>,
+    wake: &'a (dyn Fn() + Send + Sync),
+    rate: Option<f64>,
+    done: Option<Done>,
+    cut: Cut,
+}
+
+impl Worker<'_> {
+    fn run(
+        shared: &Shared,
+        make: MakeBackend,
+        tell: &Sender<Event>,
+        wake: &(dyn Fn() + Send + Sync),
+    ) {
+        let backend = match make() {
+            Ok(backend) => backend,
+            Err(error) => {
+                // a window that is gone needs no news
+                let _ = tell.send(Event::Failed(error.to_string()));
+                wake();
+                return;
+            }
+        };
+        let worker = Worker {
+            shared,
+            tell,
+            wake,
+            rate: None,
+            done: None,
+            cut: Cut::default(),
+            backend,
+        };
+        worker.say(Event::Ready(worker.backend.name.clone()));
+        worker.serve();
+    }
+
+    fn say(&self, event: Event) {
+        // a window that is gone needs no news
+        let _ = self.tell.send(event);
+        (self.wake)();
+    }
+
+    fn serve(mut self) {
+        loop {
+            let mut wanted = lock(&self.shared.wanted);
+            let request = loop {
+                if wanted.ended {
+                    return;
+                }
+                if let Some(request) = wanted.request.take() {
+                    break request;
+                }
+                let woken = self.shared.changed.wait(wanted);
+                wanted = woken.unwrap_or_else(PoisonError::into_inner);
+            };
+            let number = self.shared.newest.load(Ordering::Relaxed);
+            drop(wanted);
+            match self.climb(Arc::new(request), number) {
+                Ok(()) | Err(RenderError::Cancelled) => {}
+                Err(error) => self.say(Event::Failed(error.to_string())),
+            }
+        }
+    }
+
+    fn climb(&mut self, request: Arc<Request>, number: u64) -> Result<(), RenderError> {
+        let Some(first) = request.looks.first() else {
+            return Ok(());
+        };
+        let sides = request.looks.len();
+        // two looks climb together, each as far as its own antialiasing goes
+        let ladder = |look: &Look, rate| {
+            rungs(request.size, look.settings.antialias, request.refine, rate, sides)
+        };
+        let longest = request.looks.iter().map(|l| ladder(l, self.rate));
+        let mut rungs = longest.max_by_key(Vec::len).unwrap_or_else(|| ladder(first, self.rate));
+        if let Some(done) = self.done.take_if(|d| d.request.has_rays_of(&request)) {
+            // the rays are there; they are only shown in another way
+            let later = |r: &Rung| r.samples() > done.rung.samples() || r.size != done.rung.size;
+            rungs.retain(|r| r.size == request.size && later(r));
+            let done = Done {
+                request: Arc::clone(&request),
+                ..done
+            };
+            self.show(&done, rungs.is_empty());
+            self.done = Some(done);
+        }
+        let count = rungs.len();
+        for (i, rung) in (1..).zip(rungs) {
+            // the first picture is always finished: otherwise a camera that moves would show none
+            let number = (i > 1).then_some(number);
+            let observer = Impatient {
+                shared: self.shared,
+                number,
+            };
+            let done = self.render(&request, &rung, &observer)?;
+            self.show(&done, i == count);
+            self.done = Some(done);
+        }
+        Ok(())
+    }
+
+    fn render(
+        &mut self,
+        request: &Arc<Request>,
+        rung: &Rung,
+        observer: &dyn Observer,
+    ) -> Result<Done, RenderError> {
+        let began = Instant::now();
+        let (mut rays, mut evaluations) = (0, Evaluations::default());
+        let mut films = Vec::with_capacity(request.looks.len());
+        for look in &request.looks {
+            let scene = request.scene_of(look, &own_rung(look, rung));
+            let frame = self.backend.renderer.render(&scene, observer)?;
+            rays += frame.statistics.rays;
+            evaluations = evaluations.plus(&frame.statistics.evaluations);
+            films.push(Arc::new(frame.film));
+        }
+        let seconds = began.elapsed().as_secs_f64();
+        if rung.samples() == 1 {
+            self.rate = ladder::measured(self.rate, rays, seconds);
+        }
+        Ok(Done {
+            request: Arc::clone(request),
+            films,
+            rung: *rung,
+            seconds,
+            rays,
+            evaluations,
+        })
+    }
+
+    fn show(&mut self, done: &Done, is_last: bool) {
+        let request = &done.request;
+        let mut sides = Vec::with_capacity(done.films.len());
+        for (look, film) in request.looks.iter().zip(&done.films) {
+            let view = View {
+                plane: look.plane,
+                exposure: look.settings.exposure,
+                legend: false,
+                objects: &[],
+            };
+            let mut image = develop(film, &view);
+            let slice = request.slice.as_ref();
+            let distances = slice.and_then(|s| self.cut.paint(s, request, film, &mut image));
+            let distances = distances.map(|farthest| Section::key(farthest, TICKS));
+            let key = view.key(film, TICKS).or(distances);
+            sides.push(Exposed {
+                film: Arc::clone(film),
+                image: Arc::new(image),
+                key,
+            });
+        }
+        self.say(Event::Shown(Box::new(Shown {
+            request: Arc::clone(request),
+            rung: done.rung,
+            sides,
+            seconds: done.seconds,
+            rays: done.rays,
+            evaluations: done.evaluations,
+            is_last,
+        })));
+    }
+}
+
+/// A picture of the ladder with the antialiasing that a look asks for.
+fn own_rung(look: &Look, rung: &Rung) -> Rung {
+    use zeroset_scene::settings::Antialias::{None, Supersample};
+    let antialias = match (look.settings.antialias, rung.antialias) {
+        (None, _) | (_, None) => None,
+        (Supersample { filter, .. }, Supersample { samples, .. }) => Supersample { samples, filter },
+    };
+    Rung { antialias, ..*rung }
+}
+
+#[cfg(test)]
+#[path = "engine_tests.rs"]
+mod tests;

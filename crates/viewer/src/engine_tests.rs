@@ -1,0 +1,209 @@
+use super::*;
+use std::sync::atomic::AtomicUsize;
+use std::time::Duration;
+use zeroset_scene::load::{Language, Options, load_text};
+use zeroset_scene::render::{Frame, Statistics};
+use zeroset_scene::settings::{Antialias, Filter, March};
+
+const PATIENCE: Duration = Duration::from_secs(60);
+
+fn request(text: &str, size: [u32; 2]) -> Request {
+    let loaded = load_text("test.star", text, Language::Starlark, None, &Options::default());
+    let scene = Arc::new(loaded.unwrap().scene);
+    let look = Look {
+        settings: scene.settings,
+        shadow: None,
+        plane: Plane::Colour,
+    };
+    Request {
+        camera: scene.camera,
+        size,
+        looks: vec![look],
+        refine: false,
+        slice: None,
+        scene,
+    }
+}
+
+/// Counts, and takes its time: a picture of one ray a pixel is there at once, one with more waits until it may go on or
+/// until nobody wants it any more.
+#[derive(Clone, Default)]
+struct Counting {
+    calls: Arc<AtomicUsize>,
+    cancelled: Arc<AtomicUsize>,
+    may_finish: Arc<AtomicBool>,
+}
+
+impl Renderer for Counting {
+    fn render(&self, scene: &Scene, observer: &dyn Observer) -> Result<Frame, RenderError> {
+        self.calls.fetch_add(1, Ordering::SeqCst);
+        let [width, height] = scene.settings.size;
+        while scene.settings.antialias != Antialias::None && !self.may_finish.load(Ordering::SeqCst) {
+            if observer.is_cancelled() {
+                self.cancelled.fetch_add(1, Ordering::SeqCst);
+                return Err(RenderError::Cancelled);
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        let statistics = Statistics {
+            rays: u64::from(width * height),
+            ..Statistics::default()
+        };
+        let film = Film::new(width, height);
+        Ok(Frame { film, statistics })
+    }
+}
+
+fn started(renderer: impl Renderer + Send + 'static) -> Engine {
+    let make = || {
+        Ok(Backend {
+            name: "test".into(),
+            renderer: Box::new(renderer),
+        })
+    };
+    let engine = Engine::start(Box::new(make), || {}).unwrap();
+    assert!(matches!(engine.wait(PATIENCE), Some(Event::Ready(name)) if name == "test"));
+    engine
+}
+
+#[track_caller]
+fn picture(engine: &Engine) -> Shown {
+    match engine.wait(PATIENCE) {
+        Some(Event::Shown(shown)) => *shown,
+        Some(Event::Failed(reason)) => panic!("{reason}"),
+        _ => panic!("no picture"),
+    }
+}
+
+#[track_caller]
+fn last(engine: &Engine) -> Shown {
+    loop {
+        let shown = picture(engine);
+        if shown.is_last {
+            return shown;
+        }
+    }
+}
+
+const BALL: &str = "show(sphere())\nrender(aa = supersample(4, filter = \"box\"))\n";
+
+#[test]
+fn pictures_come_from_coarse_to_refined() {
+    let engine = Engine::start(Box::new(|| Backend::cpu(Some(2))), || {}).unwrap();
+    assert!(matches!(engine.wait(PATIENCE), Some(Event::Ready(name)) if name.contains("2 threads")));
+    // more than an unmeasured machine can do in time
+    engine.ask(request(BALL, [400, 300]));
+    let mut samples = Vec::new();
+    loop {
+        let shown = picture(&engine);
+        let size = shown.rung.size;
+        assert!(size == [400, 300] || (samples.is_empty() && size[0] < 400), "{size:?}");
+        let [width, height] = size.map(|n| n as usize);
+        assert_eq!(shown.sides[0].image.size, [width, height]);
+        assert!(shown.evaluations.total() > shown.rays / 4 && shown.seconds > 0.0);
+        let middle = shown.sides[0].image.pixels[height / 2 * width + width / 2];
+        assert!(middle.r() > 40, "the ball is not there: {middle:?}");
+        samples.push(shown.rung.samples());
+        if shown.is_last {
+            break;
+        }
+    }
+    assert_eq!(samples, [1, 1, 4]);
+}
+
+#[test]
+fn the_newest_request_ends_the_others() {
+    let renderer = Counting::default();
+    let engine = started(renderer.clone());
+    engine.ask(request(BALL, [8, 8]));
+    assert_eq!(picture(&engine).rung.samples(), 1);
+    while renderer.calls.load(Ordering::SeqCst) < 2 {
+        std::thread::yield_now();
+    }
+    // the refined picture is waiting now
+    engine.ask(request(BALL, [16, 16]));
+    let next = picture(&engine);
+    assert_eq!((next.rung.size, next.rung.samples()), ([16, 16], 1));
+    assert_eq!(renderer.cancelled.load(Ordering::SeqCst), 1);
+    renderer.may_finish.store(true, Ordering::SeqCst);
+    let refined = picture(&engine);
+    assert!(refined.is_last && refined.rung.samples() == 4);
+}
+
+/// A camera that never rests shows pictures all the same.
+#[test]
+fn the_first_picture_of_a_request_is_always_finished() {
+    let engine = started(Counting::default());
+    for width in 1..=20 {
+        engine.ask(request(BALL, [width, 4]));
+        assert_eq!(picture(&engine).rung.size, [width, 4]);
+    }
+}
+
+#[test]
+fn what_is_only_shown_differently_takes_no_rays() {
+    let renderer = Counting::default();
+    renderer.may_finish.store(true, Ordering::SeqCst);
+    let engine = started(renderer.clone());
+    let first = request(BALL, [8, 8]);
+    engine.ask(first.clone());
+    last(&engine);
+    let calls = renderer.calls.load(Ordering::SeqCst);
+    let mut other = first.clone();
+    other.looks[0].plane = Plane::Steps;
+    other.looks[0].settings.exposure = 1.0;
+    other.slice = Some(Slice { axis: 0, at: 0.1 });
+    engine.ask(other.clone());
+    let shown = picture(&engine);
+    assert!(shown.is_last && shown.sides[0].key.is_some());
+    assert_eq!(renderer.calls.load(Ordering::SeqCst), calls);
+    // one that goes on from there takes only what is missing
+    other.refine = true;
+    engine.ask(other.clone());
+    assert_eq!(last(&engine).rung.samples(), 64);
+    assert_eq!(renderer.calls.load(Ordering::SeqCst), calls + 2);
+    // and another method takes all
+    other.looks[0].settings.march = March::Sphere;
+    engine.ask(other);
+    assert_eq!(last(&engine).rung.samples(), 64);
+    assert_eq!(renderer.calls.load(Ordering::SeqCst), calls + 2 + 4);
+}
+
+#[test]
+fn two_looks_are_two_pictures() {
+    let engine = Engine::start(Box::new(|| Backend::cpu(Some(2))), || {}).unwrap();
+    let mut wanted = request(BALL, [48, 48]);
+    let mut other = wanted.looks[0];
+    other.settings.antialias = Antialias::None;
+    other.plane = Plane::Normal;
+    wanted.looks.push(other);
+    engine.wait(PATIENCE);
+    engine.ask(wanted);
+    let shown = last(&engine);
+    assert_eq!(shown.sides.len(), 2);
+    assert!(shown.sides[0].image.pixels != shown.sides[1].image.pixels);
+    let filter = Filter::Box;
+    assert_eq!(shown.rung.antialias, Antialias::Supersample { samples: 4, filter });
+    assert_eq!(own_rung(&other, &shown.rung).antialias, Antialias::None);
+}
+
+#[test]
+fn what_cannot_be_rendered_is_said() {
+    let make = || {
+        Err(RenderError::Threads {
+            threads: 7,
+            reason: "there are none".into(),
+        })
+    };
+    let engine = Engine::start(Box::new(make), || {}).unwrap();
+    assert!(matches!(engine.wait(PATIENCE), Some(Event::Failed(reason)) if reason.contains("there are none")));
+}
+
+#[test]
+fn a_window_that_closes_waits_for_nothing() {
+    let engine = started(Counting::default());
+    engine.ask(request(BALL, [8, 8]));
+    picture(&engine);
+    // the refined picture would never end
+    drop(engine);
+}

@@ -1,0 +1,229 @@
+//! The thread that loads: the scene again for every change of time or of a slider, and whenever a file is saved.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use zeroset_scene::load::{Control, Failed, Loaded, Options, Parameter, load};
+use zeroset_scene::watch::{PAUSE, Watched};
+
+/// What a person is told of a scene that cannot be loaded.
+pub type Explain = fn(&Failed) -> String;
+
+/// What loading gave.
+#[derive(Debug)]
+pub struct Outcome {
+    /// What it was asked for, without parameters that a new version of the file no longer has.
+    pub options: Options,
+    /// Whether a file was saved, rather than a parameter moved.
+    pub is_edit: bool,
+    /// The scene, or what is wrong with it.
+    pub result: Result<Arc<Loaded>, String>,
+}
+
+/// The window's end of the thread that loads.
+pub struct Loader {
+    ask: Sender<Options>,
+    outcomes: Receiver<Outcome>,
+}
+
+impl Loader {
+    /// Starts the thread, which loads the scene at once. It ends with the loader. `wake` is called whenever there is an
+    /// outcome to take.
+    ///
+    /// # Errors
+    /// The system gives no thread.
+    pub fn start(
+        path: PathBuf,
+        options: Options,
+        explain: Explain,
+        wake: impl Fn() + Send + 'static,
+    ) -> std::io::Result<Loader> {
+        let (ask, asked) = channel();
+        let (tell, outcomes) = channel();
+        let work = move || {
+            let mut watcher = Watcher::new(path, options, explain);
+            while let Some(outcome) = watcher.next(&asked) {
+                if tell.send(outcome).is_err() {
+                    return;
+                }
+                wake();
+            }
+        };
+        std::thread::Builder::new().name("loader".into()).spawn(work)?;
+        Ok(Loader { ask, outcomes })
+    }
+
+    /// Asks for the scene with other parameters or at another time.
+    pub fn ask(&self, options: Options) {
+        // a thread that is gone has said why
+        let _ = self.ask.send(options);
+    }
+
+    /// The next outcome, if there is one.
+    pub fn take(&self) -> Option<Outcome> {
+        self.outcomes.try_recv().ok()
+    }
+
+    /// As [`Loader::take`], and waits for it.
+    pub fn wait(&self, most: std::time::Duration) -> Option<Outcome> {
+        self.outcomes.recv_timeout(most).ok()
+    }
+}
+
+/// The thread's side.
+struct Watcher {
+    path: PathBuf,
+    options: Options,
+    explain: Explain,
+    watched: Watched,
+    is_first: bool,
+}
+
+impl Watcher {
+    fn new(path: PathBuf, options: Options, explain: Explain) -> Watcher {
+        Watcher {
+            watched: Watched::of([path.clone()]),
+            path,
+            options,
+            explain,
+            is_first: true,
+        }
+    }
+
+    /// Waits until there is something to load, and loads it. `None` where nobody waits any more.
+    fn next(&mut self, asked: &Receiver<Options>) -> Option<Outcome> {
+        if std::mem::take(&mut self.is_first) {
+            return Some(self.load(false));
+        }
+        loop {
+            match asked.recv_timeout(PAUSE) {
+                Ok(options) => {
+                    // of many moves of a slider the last one counts
+                    self.options = asked.try_iter().last().unwrap_or(options);
+                    return Some(self.load(false));
+                }
+                Err(RecvTimeoutError::Disconnected) => return None,
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+            if self.watched.changed() {
+                self.watched = self.watched.settled();
+                return Some(self.load(true));
+            }
+        }
+    }
+
+    fn load(&mut self, is_edit: bool) -> Outcome {
+        let mut result = load(&self.path, &self.options);
+        if is_edit && result.is_err() && !self.options.set.is_empty() {
+            // a parameter that was moved may be gone from the file, or have another range
+            let plain = Options {
+                set: BTreeMap::new(),
+                ..self.options.clone()
+            };
+            if let Ok(loaded) = load(&self.path, &plain) {
+                self.options.set.retain(|name, text| {
+                    let parameter = loaded.parameters.iter().find(|p| p.name == *name);
+                    parameter.is_some_and(|p| takes(p, text))
+                });
+                result = load(&self.path, &self.options);
+            }
+        }
+        let files = match &result {
+            Ok(loaded) => loaded.files.clone(),
+            Err(failed) => failed.files.clone(),
+        };
+        self.watched = self.watched.with(files);
+        Outcome {
+            options: self.options.clone(),
+            is_edit,
+            result: match result {
+                Ok(loaded) => Ok(Arc::new(loaded)),
+                Err(failed) => Err((self.explain)(&failed)),
+            },
+        }
+    }
+}
+
+/// Whether a parameter can still be what it was set to.
+fn takes(parameter: &Parameter, text: &str) -> bool {
+    match &parameter.control {
+        Control::Slider { min, max } => {
+            text.parse::<f64>().is_ok_and(|x| (*min..=*max).contains(&x))
+        }
+        Control::Choice { options } => options.iter().any(|o| o == text),
+        Control::Toggle => matches!(text, "true" | "false"),
+        Control::Colour => text.starts_with('#'),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    fn patience() -> Duration {
+        Duration::from_secs(60)
+    }
+
+    fn started(text: &str) -> (tempfile::TempDir, PathBuf, Loader) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.star");
+        std::fs::write(&path, text).unwrap();
+        let set = Options::default();
+        let loader = Loader::start(path.clone(), set, |f| f.to_string(), || {}).unwrap();
+        (folder, path, loader)
+    }
+
+    const BALL: &str = "r = slider(\"r\", 0.5)\nshow(sphere(r))\n";
+
+    fn set(name: &str, value: &str) -> Options {
+        Options {
+            set: [(name.to_owned(), value.to_owned())].into(),
+            ..Options::default()
+        }
+    }
+
+    #[test]
+    fn every_save_is_loaded_and_what_is_wrong_is_said() {
+        let (_folder, path, loader) = started(BALL);
+        let first = loader.wait(patience()).unwrap();
+        assert!(!first.is_edit && first.result.is_ok());
+
+        std::fs::write(&path, "show(spher(0.5))\n").unwrap();
+        let broken = loader.wait(patience()).unwrap();
+        assert!(broken.is_edit && broken.result.unwrap_err().contains("spher"));
+
+        std::fs::write(&path, "show(box(0.5))\nshow(sphere(1))\n").unwrap();
+        let mended = loader.wait(patience()).unwrap();
+        assert_eq!(mended.result.unwrap().scene.objects.len(), 2);
+        assert!(loader.wait(Duration::from_millis(300)).is_none());
+    }
+
+    #[test]
+    fn sliders_are_kept_over_a_save_as_far_as_they_fit() {
+        let (_folder, path, loader) = started(BALL);
+        loader.wait(patience()).unwrap();
+        loader.ask(set("r", "0.75"));
+        let moved = loader.wait(patience()).unwrap();
+        assert!(!moved.is_edit && moved.result.is_ok());
+
+        std::fs::write(&path, format!("{BALL}show(plane())\n")).unwrap();
+        let edited = loader.wait(patience()).unwrap();
+        assert!(edited.is_edit && edited.options == set("r", "0.75"));
+
+        let narrower = "r = slider(\"r\", 0.2, max = 0.5)\nshow(sphere(r))\n";
+        std::fs::write(&path, narrower).unwrap();
+        let edited = loader.wait(patience()).unwrap();
+        assert!(edited.result.is_ok() && edited.options.set.is_empty());
+    }
+
+    #[test]
+    fn a_parameter_that_never_was_is_an_error() {
+        let (_folder, _path, loader) = started(BALL);
+        loader.wait(patience()).unwrap();
+        loader.ask(set("radius", "1"));
+        let outcome = loader.wait(patience()).unwrap();
+        assert!(outcome.result.unwrap_err().contains("radius"));
+    }
+}

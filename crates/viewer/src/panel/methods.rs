@@ -1,0 +1,70 @@
+//! The methods of the papers, side by side.
+
+use crate::session::Session;
+use crate::widget::{aside, choose, choose_or, section, slide, switch};
+use eframe::egui::{Slider, Ui};
+use zeroset_scene::settings::{Antialias, Settings};
+
+/// What is seen of the film, and how bright.
+pub fn view(ui: &mut Ui, session: &mut Session) {
+    let look = session.edited();
+    choose(ui, "Show", &mut look.plane);
+    let slider = Slider::new(&mut look.settings.exposure, -6.0..=6.0).max_decimals(2).suffix(" EV");
+    slide(ui, "Exposure", "Stops brighter or darker.", slider);
+}
+
+/// Every method that the edited look can have.
+pub fn methods(ui: &mut Ui, session: &mut Session) {
+    let stated = *session.stated();
+    let mut refine = session.refine;
+    let look = session.edited();
+    section(ui, "Marching", true, |ui| {
+        choose(ui, "March", &mut look.settings.march);
+        let about = "Marches whole tiles as cones first, so that rays start near the surface.";
+        switch(ui, "Cone prepass", about, &mut look.settings.prepass);
+        hits(ui, &mut look.settings);
+    });
+    section(ui, "Light and shadow", false, |ui| {
+        choose(ui, "Shading", &mut look.settings.shading);
+        choose_or(ui, "Shadow", "As each light has it", &mut look.shadow);
+    });
+    section(ui, "Ambient occlusion", false, |ui| {
+        choose(ui, "Occlusion", &mut look.settings.occlusion);
+        aside(ui, "Objects that choose a method of their own keep it.");
+    });
+    section(ui, "Normals", false, |ui| {
+        choose(ui, "Normals", &mut look.settings.normals);
+    });
+    section(ui, "Antialiasing", false, |ui| {
+        choose(ui, "Edges", &mut look.settings.antialias);
+        if let Antialias::Supersample { filter, .. } = &mut look.settings.antialias {
+            choose(ui, "Filter", filter);
+        }
+        let slider = Slider::new(&mut look.settings.seed, 0..=99);
+        slide(ui, "Seed", "Other random numbers for all that samples.", slider);
+        let about = "Goes on to 64 rays a pixel while nothing changes.";
+        switch(ui, "Refine at rest", about, &mut refine);
+    });
+    let changed = Settings { size: stated.size, ..look.settings } != stated || look.shadow.is_some();
+    ui.add_space(4.0);
+    let reset = ui.add_enabled(changed, eframe::egui::Button::new("As in the file"));
+    if reset.on_hover_text("Puts every method back to what the file states.").clicked() {
+        look.settings = stated;
+        look.shadow = None;
+    }
+    session.refine = refine;
+}
+
+/// When a ray has hit (Keinert et al. 2014, 3.2 to 3.4).
+fn hits(ui: &mut Ui, settings: &mut Settings) {
+    let slider = Slider::new(&mut settings.max_steps, 1..=2048).logarithmic(true);
+    slide(ui, "Most steps", "Steps that a ray may take.", slider);
+    let slider = Slider::new(&mut settings.footprint, 0.05..=4.0).logarithmic(true).max_decimals(2);
+    let about = "A hit is nearer to the surface than so many pixel widths.";
+    slide(ui, "Hit within", about, slider);
+    let slider = Slider::new(&mut settings.discontinuity_reduction, 0..=8);
+    let about = "Steps that put a hit where its pixel meets the surface (Keinert et al. 2014, 3.4).";
+    slide(ui, "Hit repair", about, slider);
+    let about = "A ray that runs out of steps takes its best candidate (Keinert et al. 2014, 3.2).";
+    switch(ui, "Hit selection", about, &mut settings.hit_selection);
+}

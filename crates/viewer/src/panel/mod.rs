@@ -1,0 +1,27 @@
+//! The panels: each changes the session, and nothing else.
+
+mod camera;
+mod comparison;
+mod error;
+mod help;
+mod legend;
+mod methods;
+mod parameters;
+mod picked;
+mod slice;
+mod status;
+mod timeline;
+
+pub use camera::camera;
+pub use comparison::comparison;
+pub(crate) use comparison::set_comparison;
+pub use error::error;
+pub use help::{KEYS, help};
+pub use legend::legend;
+pub use methods::{methods, view};
+pub use parameters::parameters;
+pub(crate) use picked::card;
+pub use picked::picked;
+pub use slice::slice;
+pub use status::status;
+pub use timeline::timeline;

@@ -1,0 +1,343 @@
+//! What the window is about, apart from how it is drawn: the scene, the camera, the methods, the time.
+
+use crate::clock::Clock;
+use crate::engine::{Look, Request, Shown};
+use crate::loader::Outcome;
+use crate::pick::Picked;
+use crate::rig::{Rig, widened};
+use crate::slice::Slice;
+use std::path::PathBuf;
+use std::sync::Arc;
+use zeroset_output::view::Key;
+use zeroset_scene::camera::Camera;
+use zeroset_scene::film::Plane;
+use zeroset_scene::load::{Loaded, Options, Parameter, Setting};
+use zeroset_scene::scene::Scene;
+use zeroset_scene::settings::Settings;
+
+/// The last version of the scene that could be loaded.
+pub struct Current {
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// All that loading found out.
+    pub loaded: Arc<Loaded>,
+}
+
+/// Two looks beside each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Comparison {
+    /// Whether both are shown.
+    pub is_on: bool,
+    /// Where the divider is, as a share of the picture's width.
+    pub divider: f32,
+    /// Which look the panels change: 0 = A, left; 1 = B, right.
+    pub edited: usize,
+}
+
+/// What the window is about.
+pub struct Session {
+    /// The scene file.
+    pub path: PathBuf,
+    /// Parameters, time and limits that the scene is loaded with.
+    pub options: Options,
+    /// What was asked of the loader last.
+    asked: Options,
+    /// The scene, once one could be loaded.
+    pub current: Option<Current>,
+    /// What is wrong with the file as it is now, or with rendering it.
+    pub trouble: Option<String>,
+    /// The camera; meaningful once there is a scene.
+    pub rig: Rig,
+    /// Whether the camera was moved away from where the file puts it.
+    pub is_free: bool,
+    /// How A and B show the scene.
+    pub looks: [Look; 2],
+    /// A and B beside each other.
+    pub comparison: Comparison,
+    /// Whether pictures go on to 64 rays a pixel while nothing changes.
+    pub refine: bool,
+    /// The plane through the field, and whether it is shown.
+    pub slice: Slice,
+    /// Whether the plane is shown.
+    pub is_sliced: bool,
+    /// The time.
+    pub clock: Clock,
+    /// What was clicked.
+    pub picked: Option<Picked>,
+    /// The picture that is shown.
+    pub shown: Option<Box<Shown>>,
+    /// What renders.
+    pub backend: Option<String>,
+    /// The settings that the file states.
+    stated: Settings,
+    /// The picture that was asked for last.
+    wanted: Option<Request>,
+}
+
+impl Session {
+    /// A session that knows nothing of its scene yet.
+    pub fn new(path: PathBuf, options: Options) -> Session {
+        let stated = Settings::default();
+        let look = Look {
+            settings: stated,
+            shadow: None,
+            plane: Plane::Colour,
+        };
+        let lens = zeroset_scene::camera::Lens::Pinhole { fov: 0.7 };
+        let camera = Camera {
+            eye: glam::Vec3::new(0.0, 0.0, 4.0),
+            axes: glam::Mat3::IDENTITY,
+            lens,
+            near: 0.0,
+            far: 1000.0,
+        };
+        Session {
+            path,
+            asked: options.clone(),
+            clock: Clock::new(options.time),
+            options,
+            current: None,
+            trouble: None,
+            rig: Rig::new(&camera, None),
+            is_free: false,
+            looks: [look; 2],
+            comparison: Comparison {
+                is_on: false,
+                divider: 0.5,
+                edited: 0,
+            },
+            refine: true,
+            slice: Slice { axis: 2, at: 0.0 },
+            is_sliced: false,
+            picked: None,
+            shown: None,
+            backend: None,
+            stated,
+            wanted: None,
+        }
+    }
+
+    /// The scene's name, or the file's as long as there is none.
+    pub fn name(&self) -> String {
+        match &self.current {
+            Some(current) => current.scene.name.clone(),
+            None => (self.path.file_stem()).map_or_else(String::new, |s| s.to_string_lossy().into()),
+        }
+    }
+
+    /// Whether the scene asks for the time.
+    pub fn is_animated(&self) -> bool {
+        self.current.as_ref().is_some_and(|c| c.loaded.animated)
+    }
+
+    /// The parameters of the scene.
+    pub fn parameters(&self) -> &[Parameter] {
+        self.current.as_ref().map_or(&[], |c| &c.loaded.parameters)
+    }
+
+    /// What a parameter is: as it was set, before the scene that has it is loaded.
+    pub fn setting(&self, parameter: &Parameter) -> Setting {
+        match self.options.set.get(&parameter.name) {
+            Some(text) => read(&parameter.value, text).unwrap_or_else(|| parameter.value.clone()),
+            None => parameter.default.clone(),
+        }
+    }
+
+    /// Sets a parameter.
+    pub fn set(&mut self, parameter: &Parameter, setting: &Setting) {
+        if *setting == parameter.default {
+            self.options.set.remove(&parameter.name);
+        } else {
+            self.options.set.insert(parameter.name.clone(), written(setting));
+        }
+    }
+
+    /// Gives a parameter back its default.
+    pub fn reset(&mut self, name: &str) {
+        self.options.set.remove(name);
+    }
+
+    /// Takes what the loader gave.
+    pub fn absorb(&mut self, outcome: Outcome) {
+        if outcome.is_edit {
+            // parameters that the file no longer has are gone
+            let kept = |name: &String| outcome.options.set.contains_key(name);
+            let had = |name: &String| self.asked.set.contains_key(name);
+            self.options.set.retain(|name, _| kept(name) || !had(name));
+            self.asked = outcome.options.clone();
+        }
+        let loaded = match outcome.result {
+            Ok(loaded) => loaded,
+            Err(report) => {
+                self.trouble = Some(report);
+                return;
+            }
+        };
+        self.trouble = None;
+        let scene = Arc::new(loaded.scene.clone());
+        let moved = match &self.current {
+            None => true,
+            Some(before) => {
+                before.scene.camera != scene.camera && (outcome.is_edit || !self.is_free)
+            }
+        };
+        if moved {
+            self.rig = Rig::new(&scene.camera, scene.finite_bounds());
+            self.is_free = false;
+        }
+        if self.current.is_none() {
+            self.slice.at = 0.5 * (Slice::room(&scene).min[2] + Slice::room(&scene).max[2]);
+            for look in &mut self.looks {
+                look.settings = scene.settings;
+            }
+        }
+        for look in &mut self.looks {
+            look.settings = merged(&self.stated, &look.settings, &scene.settings);
+        }
+        self.stated = scene.settings;
+        if outcome.is_edit {
+            self.picked = None;
+        }
+        self.current = Some(Current { scene, loaded });
+    }
+
+    /// What to ask of the loader, if anything has changed.
+    pub fn to_load(&mut self) -> Option<Options> {
+        self.options.time = self.clock.time();
+        (self.options != self.asked).then(|| {
+            self.asked = self.options.clone();
+            self.options.clone()
+        })
+    }
+
+    /// The settings that the file states.
+    pub fn stated(&self) -> &Settings {
+        &self.stated
+    }
+
+    /// The look that the panels change.
+    pub fn edited(&mut self) -> &mut Look {
+        &mut self.looks[self.comparison.edited.min(1)]
+    }
+
+    /// The camera for a picture of this size.
+    pub fn camera(&self, size: [u32; 2]) -> Camera {
+        let [width, height] = self.stated.size.map(|n| n.max(1) as f32);
+        widened(&self.rig.camera(), width / height, size)
+    }
+
+    /// The picture to show in so many pixels, if there is a scene.
+    pub fn request(&self, size: [u32; 2]) -> Option<Request> {
+        let current = self.current.as_ref()?;
+        let count = if self.comparison.is_on { 2 } else { 1 };
+        Some(Request {
+            scene: Arc::clone(&current.scene),
+            camera: self.camera(size),
+            size: size.map(|n| n.max(1)),
+            looks: self.looks[..count].to_vec(),
+            refine: self.refine,
+            slice: self.is_sliced.then_some(self.slice),
+        })
+    }
+
+    /// The picture to ask the engine for, if it is another one than last time.
+    pub fn to_render(&mut self, size: [u32; 2]) -> Option<Request> {
+        let request = self.request(size)?;
+        if self.wanted.as_ref() == Some(&request) {
+            return None;
+        }
+        self.wanted = Some(request.clone());
+        Some(request)
+    }
+
+    /// What the colours of the edited look mean, where they are numbers.
+    pub fn key(&self) -> Option<&Key> {
+        let sides = &self.shown.as_ref()?.sides;
+        let edited = self.comparison.edited.min(sides.len().saturating_sub(1));
+        sides.get(edited)?.key.as_ref()
+    }
+
+    /// Puts the camera back to where the file has it.
+    pub fn reset_camera(&mut self) {
+        if let Some(current) = &self.current {
+            self.rig = Rig::new(&current.scene.camera, current.scene.finite_bounds());
+            self.is_free = false;
+        }
+    }
+
+    /// Shows all that has an end.
+    pub fn frame_all(&mut self, size: [u32; 2]) {
+        let bounds = self.current.as_ref().and_then(|c| c.scene.finite_bounds());
+        // the rig's lens sees the height of the scene's shape, which a narrow window widens
+        let [width, height] = self.stated.size.map(|n| f64::from(n.max(1)));
+        let aspect = f64::from(size[0].max(1)) / f64::from(size[1].max(1));
+        self.rig.frame(bounds, aspect.max(width / height));
+        self.is_free = true;
+    }
+}
+
+/// A setting as the command line takes it after `--set NAME=`.
+fn written(setting: &Setting) -> String {
+    match setting {
+        Setting::Number(x) => format!("{x}"),
+        Setting::Text(text) => text.clone(),
+        Setting::Flag(flag) => flag.to_string(),
+        Setting::Colour(srgb) => {
+            let [r, g, b] = levels(srgb);
+            format!("#{r:02x}{g:02x}{b:02x}")
+        }
+    }
+}
+
+/// An sRGB colour in 256 levels.
+pub(crate) fn levels(srgb: &[f64; 3]) -> [u8; 3] {
+    srgb.map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8)
+}
+
+/// A setting of the same kind as another one from what was written.
+fn read(like: &Setting, text: &str) -> Option<Setting> {
+    Some(match like {
+        Setting::Number(_) => Setting::Number(text.trim().parse().ok()?),
+        Setting::Text(_) => Setting::Text(text.to_owned()),
+        Setting::Flag(_) => match text.trim().to_lowercase().as_str() {
+            "true" | "on" | "yes" | "1" => Setting::Flag(true),
+            "false" | "off" | "no" | "0" => Setting::Flag(false),
+            _ => return None,
+        },
+        Setting::Colour(_) => Setting::Colour(zeroset_scene::colour::parse(text.trim()).ok()?),
+    })
+}
+
+/// Settings after the file was edited: what was changed in the window stays, everything else is as the file says now.
+fn merged(before: &Settings, edited: &Settings, now: &Settings) -> Settings {
+    macro_rules! each {
+        ($($field:ident),+) => {
+            Settings {
+                $($field: if edited.$field == before.$field { now.$field } else { edited.$field }),+
+            }
+        };
+    }
+    let settings = each!(
+        size,
+        march,
+        prepass,
+        max_steps,
+        hit_selection,
+        discontinuity_reduction,
+        footprint,
+        normals,
+        shading,
+        occlusion,
+        antialias,
+        seed,
+        exposure
+    );
+    Settings {
+        size: now.size,
+        ..settings
+    }
+}
+
+#[cfg(test)]
+#[path = "session_tests.rs"]
+mod tests;

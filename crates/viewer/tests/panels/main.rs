@@ -1,0 +1,5 @@
+//! Every panel, driven the way a screen reader drives it: by the names of its controls.
+
+mod app;
+mod panels;
+mod session;
