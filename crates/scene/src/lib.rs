@@ -17,5 +17,5 @@ pub mod render;
 pub mod report;
 pub mod scene;
 pub mod settings;
-pub mod watch;
 pub mod view;
+pub mod watch;

@@ -86,11 +86,14 @@ impl App {
                 loader.ask(options);
             }
         }
-        let mut has_news = false;
+        let (mut has_news, mut said) = (false, None);
         if let Some(engine) = &self.engine {
             while let Some(event) = engine.take() {
                 match event {
                     Event::Ready(name) => self.session.backend = Some(name),
+                    Event::FellBack(reason) => {
+                        said = Some(format!("The CPU renders now: {reason}"));
+                    }
                     Event::Failed(reason) => self.session.trouble = Some(reason),
                     Event::Shown(shown) => {
                         self.session.shown = Some(shown);
@@ -99,8 +102,12 @@ impl App {
                 }
             }
             if !engine.is_alive() && self.session.trouble.is_none() {
-                self.session.trouble = Some("the renderer broke down; please report this scene as a bug".into());
+                self.session.trouble =
+                    Some("the renderer broke down; please report this scene as a bug".into());
             }
+        }
+        if let Some(said) = said {
+            self.tell(said);
         }
         if has_news {
             self.stage.load(ctx, &self.session);
@@ -124,13 +131,21 @@ impl App {
         self.keys(&ctx);
         self.fly(&ctx);
         let palette = Palette::of(ui.visuals());
-        let bar = |margin: Margin| Frame::new().fill(ui.visuals().panel_fill).inner_margin(margin);
+        let bar = |margin: Margin| {
+            Frame::new()
+                .fill(ui.visuals().panel_fill)
+                .inner_margin(margin)
+        };
         let (wide, thin) = (bar(Margin::symmetric(14, 8)), bar(Margin::symmetric(14, 4)));
         let side = bar(Margin::symmetric(14, 10));
         Panel::top("top").frame(wide).show(ui, |ui| self.top(ui));
-        Panel::bottom("status").frame(thin).show(ui, |ui| panel::status(ui, &self.session));
+        Panel::bottom("status")
+            .frame(thin)
+            .show(ui, |ui| panel::status(ui, &self.session));
         if self.session.is_animated() {
-            Panel::bottom("timeline").frame(wide).show(ui, |ui| panel::timeline(ui, &mut self.session));
+            Panel::bottom("timeline")
+                .frame(wide)
+                .show(ui, |ui| panel::timeline(ui, &mut self.session));
         }
         if self.is_panel_open {
             Panel::right("panel")
@@ -139,9 +154,11 @@ impl App {
                 .size_range(PANEL..=520.0)
                 .show(ui, |ui| self.side(ui));
         }
-        CentralPanel::default().frame(Frame::new().fill(palette.surround)).show(ui, |ui| {
-            self.stage.show(ui, &mut self.session);
-        });
+        CentralPanel::default()
+            .frame(Frame::new().fill(palette.surround))
+            .show(ui, |ui| {
+                self.stage.show(ui, &mut self.session);
+            });
         if let Some(rect) = self.stage.rect {
             cards(ui, &mut self.session, rect);
         }
@@ -157,23 +174,46 @@ impl App {
     fn top(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
             ui.label(RichText::new(self.session.name()).heading().strong());
-            let file = self.session.path.file_name().unwrap_or_default().to_string_lossy();
-            ui.label(RichText::new(file).small().weak()).on_hover_text(self.session.path.display().to_string());
+            let file = self
+                .session
+                .path
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy();
+            ui.label(RichText::new(file).small().weak())
+                .on_hover_text(self.session.path.display().to_string());
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 ui.spacing_mut().item_spacing.x = GAP;
-                ui.toggle_value(&mut self.is_panel_open, "Panel").on_hover_text("Shows or hides the panel (P).");
-                ui.toggle_value(&mut self.is_help_open, "Help").on_hover_text("Keys and mouse (? or F1).");
+                ui.toggle_value(&mut self.is_panel_open, "Panel")
+                    .on_hover_text("Shows or hides the panel (P).");
+                ui.toggle_value(&mut self.is_help_open, "Help")
+                    .on_hover_text("Keys and mouse (? or F1).");
                 let dark = ui.visuals().dark_mode;
-                let (word, theme) = if dark { ("Light", Theme::Light) } else { ("Dark", Theme::Dark) };
-                if ui.button(word).on_hover_text("The other theme.").accessible_name("Change the theme").clicked() {
+                let (word, theme) = if dark {
+                    ("Light", Theme::Light)
+                } else {
+                    ("Dark", Theme::Dark)
+                };
+                if ui
+                    .button(word)
+                    .on_hover_text("The other theme.")
+                    .accessible_name("Change the theme")
+                    .clicked()
+                {
                     ui.ctx().set_theme(theme);
                 }
-                if ui.button("Save…").on_hover_text("Saves the picture (Ctrl+S).").clicked() {
+                if ui
+                    .button("Save…")
+                    .on_hover_text("Saves the picture (Ctrl+S).")
+                    .clicked()
+                {
                     self.saving = Some(save::default_name(&self.session));
                 }
                 let mut on = self.session.comparison.is_on;
-                ui.toggle_value(&mut self.session.is_sliced, "Slice").on_hover_text("A plane through the field (X).");
-                ui.toggle_value(&mut on, "Compare").on_hover_text("Two settings beside each other (C).");
+                ui.toggle_value(&mut self.session.is_sliced, "Slice")
+                    .on_hover_text("A plane through the field (X).");
+                ui.toggle_value(&mut on, "Compare")
+                    .on_hover_text("Two settings beside each other (C).");
                 set_comparison(&mut self.session, on);
             });
         });
@@ -185,20 +225,23 @@ impl App {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.set_width(ui.available_width() - GAP);
             if session.comparison.is_on {
-                section(ui, "Comparison", true, |ui| panel::comparison(ui, session));
+                section(ui, "A and B", true, |ui| panel::comparison(ui, session));
+            }
+            if session.is_sliced {
+                section(ui, "Plane through the field", true, |ui| {
+                    panel::slice(ui, session)
+                });
             }
             if session.current.is_some() {
                 let has_parameters = !session.parameters().is_empty();
-                section(ui, "Parameters", has_parameters, |ui| panel::parameters(ui, session));
+                section(ui, "Parameters", has_parameters, |ui| {
+                    panel::parameters(ui, session)
+                });
             }
             section(ui, "View", true, |ui| panel::view(ui, session));
             panel::methods(ui, session);
             ui.separator();
-            section(ui, "Plane through the field", session.is_sliced, |ui| panel::slice(ui, session));
             section(ui, "Camera", false, |ui| panel::camera(ui, session, size));
-            if !session.comparison.is_on {
-                section(ui, "Comparison", false, |ui| panel::comparison(ui, session));
-            }
         });
     }
 

@@ -42,7 +42,13 @@ fn encode(curve: &[f32], linear: f32) -> f32 {
 pub(crate) fn develop(film: &Film, view: &View<'_>) -> ColorImage {
     let size = [film.width() as usize, film.height() as usize];
     if view.plane != Plane::Colour || !film.has(Plane::Colour) {
-        return pixels(&View { legend: false, ..*view }.of(film));
+        return pixels(
+            &View {
+                legend: false,
+                ..*view
+            }
+            .of(film),
+        );
     }
     let curve = &CURVE[..];
     let gain = view.exposure.exp2();
@@ -61,7 +67,10 @@ pub(crate) fn pixels(picture: &Picture) -> ColorImage {
     let width = picture.width().max(1);
     let colours = (0..).zip(picture.pixels());
     let out = colours.map(|(i, rgb)| level(*rgb, i % width, i / width));
-    ColorImage::new([picture.width() as usize, picture.height() as usize], out.collect())
+    ColorImage::new(
+        [picture.width() as usize, picture.height() as usize],
+        out.collect(),
+    )
 }
 
 /// The nearest of 256 levels a channel, dithered with one threshold a pixel: greys stay grey.
@@ -86,7 +95,10 @@ mod tests {
             assert!(off < 0.1 / 255.0, "{linear}: off by {off}");
         }
         let odd = [f32::NAN, -1.0, f32::INFINITY, 1.0f32.next_down()];
-        assert_eq!(odd.map(|x| (encode(curve, x) * 255.0).round()), [0.0, 0.0, 255.0, 255.0]);
+        assert_eq!(
+            odd.map(|x| (encode(curve, x) * 255.0).round()),
+            [0.0, 0.0, 255.0, 255.0]
+        );
     }
 
     #[test]

@@ -165,6 +165,8 @@ pub enum Event {
     Ready(String),
     /// A picture is done.
     Shown(Box<Shown>),
+    /// The device failed, for this reason; the CPU renders from now on.
+    FellBack(String),
     /// The scene cannot be rendered.
     Failed(String),
 }
@@ -345,11 +347,28 @@ impl Worker<'_> {
             };
             let number = self.shared.newest.load(Ordering::Relaxed);
             drop(wanted);
-            match self.climb(Arc::new(request), number) {
+            let request = Arc::new(request);
+            let mut result = self.climb(Arc::clone(&request), number);
+            if let Err(RenderError::Device { reason, .. }) = &result {
+                let reason = reason.clone();
+                result = self
+                    .fall_back(reason)
+                    .and_then(|()| self.climb(request, number));
+            }
+            match result {
                 Ok(()) | Err(RenderError::Cancelled) => {}
                 Err(error) => self.say(Event::Failed(error.to_string())),
             }
         }
+    }
+
+    /// Goes on with the CPU when the device that rendered is no more.
+    fn fall_back(&mut self, reason: String) -> Result<(), RenderError> {
+        self.backend = Backend::cpu(None)?;
+        (self.rate, self.done) = (None, None);
+        self.say(Event::Ready(self.backend.name.clone()));
+        self.say(Event::FellBack(reason));
+        Ok(())
     }
 
     fn climb(&mut self, request: Arc<Request>, number: u64) -> Result<(), RenderError> {
@@ -359,10 +378,18 @@ impl Worker<'_> {
         let sides = request.looks.len();
         // two looks climb together, each as far as its own antialiasing goes
         let ladder = |look: &Look, rate| {
-            rungs(request.size, look.settings.antialias, request.refine, rate, sides)
+            rungs(
+                request.size,
+                look.settings.antialias,
+                request.refine,
+                rate,
+                sides,
+            )
         };
         let longest = request.looks.iter().map(|l| ladder(l, self.rate));
-        let mut rungs = longest.max_by_key(Vec::len).unwrap_or_else(|| ladder(first, self.rate));
+        let mut rungs = longest
+            .max_by_key(Vec::len)
+            .unwrap_or_else(|| ladder(first, self.rate));
         if let Some(done) = self.done.take_if(|d| d.request.has_rays_of(&request)) {
             // the rays are there; they are only shown in another way
             let later = |r: &Rung| r.samples() > done.rung.samples() || r.size != done.rung.size;
@@ -457,7 +484,9 @@ fn own_rung(look: &Look, rung: &Rung) -> Rung {
     use zeroset_scene::settings::Antialias::{None, Supersample};
     let antialias = match (look.settings.antialias, rung.antialias) {
         (None, _) | (_, None) => None,
-        (Supersample { filter, .. }, Supersample { samples, .. }) => Supersample { samples, filter },
+        (Supersample { filter, .. }, Supersample { samples, .. }) => {
+            Supersample { samples, filter }
+        }
     };
     Rung { antialias, ..*rung }
 }

@@ -8,7 +8,13 @@ use zeroset_scene::settings::{Antialias, Filter, March};
 const PATIENCE: Duration = Duration::from_secs(60);
 
 fn request(text: &str, size: [u32; 2]) -> Request {
-    let loaded = load_text("test.star", text, Language::Starlark, None, &Options::default());
+    let loaded = load_text(
+        "test.star",
+        text,
+        Language::Starlark,
+        None,
+        &Options::default(),
+    );
     let scene = Arc::new(loaded.unwrap().scene);
     let look = Look {
         settings: scene.settings,
@@ -38,7 +44,8 @@ impl Renderer for Counting {
     fn render(&self, scene: &Scene, observer: &dyn Observer) -> Result<Frame, RenderError> {
         self.calls.fetch_add(1, Ordering::SeqCst);
         let [width, height] = scene.settings.size;
-        while scene.settings.antialias != Antialias::None && !self.may_finish.load(Ordering::SeqCst) {
+        while scene.settings.antialias != Antialias::None && !self.may_finish.load(Ordering::SeqCst)
+        {
             if observer.is_cancelled() {
                 self.cancelled.fetch_add(1, Ordering::SeqCst);
                 return Err(RenderError::Cancelled);
@@ -90,14 +97,19 @@ const BALL: &str = "show(sphere())\nrender(aa = supersample(4, filter = \"box\")
 #[test]
 fn pictures_come_from_coarse_to_refined() {
     let engine = Engine::start(Box::new(|| Backend::cpu(Some(2))), || {}).unwrap();
-    assert!(matches!(engine.wait(PATIENCE), Some(Event::Ready(name)) if name.contains("2 threads")));
+    assert!(
+        matches!(engine.wait(PATIENCE), Some(Event::Ready(name)) if name.contains("2 threads"))
+    );
     // more than an unmeasured machine can do in time
     engine.ask(request(BALL, [400, 300]));
     let mut samples = Vec::new();
     loop {
         let shown = picture(&engine);
         let size = shown.rung.size;
-        assert!(size == [400, 300] || (samples.is_empty() && size[0] < 400), "{size:?}");
+        assert!(
+            size == [400, 300] || (samples.is_empty() && size[0] < 400),
+            "{size:?}"
+        );
         let [width, height] = size.map(|n| n as usize);
         assert_eq!(shown.sides[0].image.size, [width, height]);
         assert!(shown.evaluations.total() > shown.rays / 4 && shown.seconds > 0.0);
@@ -183,7 +195,10 @@ fn two_looks_are_two_pictures() {
     assert_eq!(shown.sides.len(), 2);
     assert!(shown.sides[0].image.pixels != shown.sides[1].image.pixels);
     let filter = Filter::Box;
-    assert_eq!(shown.rung.antialias, Antialias::Supersample { samples: 4, filter });
+    assert_eq!(
+        shown.rung.antialias,
+        Antialias::Supersample { samples: 4, filter }
+    );
     assert_eq!(own_rung(&other, &shown.rung).antialias, Antialias::None);
 }
 
@@ -196,7 +211,32 @@ fn what_cannot_be_rendered_is_said() {
         })
     };
     let engine = Engine::start(Box::new(make), || {}).unwrap();
-    assert!(matches!(engine.wait(PATIENCE), Some(Event::Failed(reason)) if reason.contains("there are none")));
+    assert!(
+        matches!(engine.wait(PATIENCE), Some(Event::Failed(reason)) if reason.contains("there are none"))
+    );
+}
+
+/// Its device is gone.
+struct Lost;
+
+impl Renderer for Lost {
+    fn render(&self, _: &Scene, _: &dyn Observer) -> Result<Frame, RenderError> {
+        Err(RenderError::Device {
+            reason: "it was pulled out".into(),
+            advice: None,
+        })
+    }
+}
+
+#[test]
+fn the_cpu_goes_on_where_a_device_fails() {
+    let engine = started(Lost);
+    engine.ask(request(BALL, [32, 24]));
+    assert!(matches!(engine.wait(PATIENCE), Some(Event::Ready(name)) if name.starts_with("CPU")));
+    assert!(
+        matches!(engine.wait(PATIENCE), Some(Event::FellBack(reason)) if reason.contains("pulled"))
+    );
+    assert_eq!(last(&engine).rung.samples(), 4);
 }
 
 #[test]

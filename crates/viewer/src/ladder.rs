@@ -56,7 +56,11 @@ pub fn rungs(
         antialias: Antialias::None,
     });
     if let Antialias::Supersample { samples, filter } = antialias {
-        let last = if refine { samples.max(RUNGS[3]) } else { samples };
+        let last = if refine {
+            samples.max(RUNGS[3])
+        } else {
+            samples
+        };
         let between = RUNGS.into_iter().filter(|&n| n > 1 && n < last);
         rungs.extend(between.chain([last]).map(|samples| Rung {
             size: full,
@@ -75,7 +79,11 @@ fn coarse([width, height]: [u32; 2], rate: f64, sides: usize) -> [u32; 2] {
     let pixels = f64::from(width) * f64::from(height) * sides.max(1) as f64;
     let affordable = (rate * BUDGET).max(1.0);
     let over = (pixels / affordable).sqrt().ceil();
-    let over = if over.is_finite() { over as u32 } else { COARSEST };
+    let over = if over.is_finite() {
+        over as u32
+    } else {
+        COARSEST
+    };
     let over = over.clamp(1, COARSEST);
     [width.div_ceil(over), height.div_ceil(over)]
 }
@@ -139,14 +147,27 @@ mod tests {
         assert_eq!(last(many(9), false), Some(many(9)));
         assert_eq!(last(many(9), true), Some(many(64)));
         assert_eq!(last(many(256), true), Some(many(256)));
-        assert_eq!(samples(&rungs([9, 9], many(256), true, Some(1e9), 1)), [1, 4, 16, 64, 256]);
+        assert_eq!(
+            samples(&rungs([9, 9], many(256), true, Some(1e9), 1)),
+            [1, 4, 16, 64, 256]
+        );
     }
 
     #[test]
     fn odd_measurements_and_windows_do_no_harm() {
-        for rate in [None, Some(0.0), Some(f64::NAN), Some(f64::INFINITY), Some(1e-9)] {
+        for rate in [
+            None,
+            Some(0.0),
+            Some(f64::NAN),
+            Some(f64::INFINITY),
+            Some(1e-9),
+        ] {
             for full in [[0, 0], [1, 1], [7, 3000]] {
-                assert!(rungs(full, FOUR, true, rate, 2).iter().all(|r| r.size[0] > 0 && r.size[1] > 0));
+                assert!(
+                    rungs(full, FOUR, true, rate, 2)
+                        .iter()
+                        .all(|r| r.size[0] > 0 && r.size[1] > 0)
+                );
             }
         }
         assert_eq!(measured(Some(5.0), 0, 1.0), Some(5.0));

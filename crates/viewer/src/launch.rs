@@ -55,8 +55,10 @@ impl OpenError {
 /// # Errors
 /// No screen, no device.
 pub fn open(open: Open) -> Result<(), OpenError> {
-    let title = (open.scene.file_name())
-        .map_or_else(|| "Zeroset".to_owned(), |n| format!("{} - Zeroset", n.to_string_lossy()));
+    let title = (open.scene.file_name()).map_or_else(
+        || "Zeroset".to_owned(),
+        |n| format!("{} - Zeroset", n.to_string_lossy()),
+    );
     let options = eframe::NativeOptions {
         viewport: ViewportBuilder::default()
             .with_app_id("zeroset")

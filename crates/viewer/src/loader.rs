@@ -50,7 +50,9 @@ impl Loader {
                 wake();
             }
         };
-        std::thread::Builder::new().name("loader".into()).spawn(work)?;
+        std::thread::Builder::new()
+            .name("loader".into())
+            .spawn(work)?;
         Ok(Loader { ask, outcomes })
     }
 
@@ -148,9 +150,9 @@ impl Watcher {
 /// Whether a parameter can still be what it was set to.
 fn takes(parameter: &Parameter, text: &str) -> bool {
     match &parameter.control {
-        Control::Slider { min, max } => {
-            text.parse::<f64>().is_ok_and(|x| (*min..=*max).contains(&x))
-        }
+        Control::Slider { min, max } => text
+            .parse::<f64>()
+            .is_ok_and(|x| (*min..=*max).contains(&x)),
         Control::Choice { options } => options.iter().any(|o| o == text),
         Control::Toggle => matches!(text, "true" | "false"),
         Control::Colour => text.starts_with('#'),

@@ -118,7 +118,11 @@ mod tests {
         let options = Options::default();
         let loaded = load_text("pick.star", text, Language::Starlark, None, &options).unwrap();
         let scene = loaded.scene;
-        let film = CpuRenderer::new(Some(1)).unwrap().render(&scene, &Silent).unwrap().film;
+        let film = CpuRenderer::new(Some(1))
+            .unwrap()
+            .render(&scene, &Silent)
+            .unwrap()
+            .film;
         // where a point of space is on the picture
         let at = |x: f32, y: f32, z: f32| {
             let scale = 1.0 / (scene.camera.plane_height() * (6.0 - z));
@@ -127,7 +131,11 @@ mod tests {
         let ball = pick(&film, &scene.camera, &scene, at(-1.0, 0.0, 0.5)).unwrap();
         assert_eq!((ball.object, ball.name.as_str()), (0, "ball"));
         assert_eq!(ball.whereabouts().as_deref(), Some("pick.star:1:1"));
-        assert!((ball.point - Vec3::new(-1.0, 0.0, 0.5)).length() < 0.05, "{:?}", ball.point);
+        assert!(
+            (ball.point - Vec3::new(-1.0, 0.0, 0.5)).length() < 0.05,
+            "{:?}",
+            ball.point
+        );
         assert!(ball.normal.z > 0.95);
         let cube = pick(&film, &scene.camera, &scene, at(1.0, 0.0, 0.4)).unwrap();
         assert_eq!(cube.whereabouts().as_deref(), Some("pick.star:2:1"));

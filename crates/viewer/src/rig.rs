@@ -160,7 +160,9 @@ impl Rig {
             }
             Lens::Pinhole { .. } => {
                 let away = (self.eye - at).length();
-                let factor = factor.max(CLOSEST / away.max(CLOSEST)).max(CLOSEST / self.distance);
+                let factor = factor
+                    .max(CLOSEST / away.max(CLOSEST))
+                    .max(CLOSEST / self.distance);
                 self.eye = at + (self.eye - at) * factor;
                 self.distance *= factor;
             }
@@ -215,7 +217,11 @@ impl Rig {
     pub fn statement(&self) -> String {
         let camera = self.camera();
         let target = self.pivot().as_vec3();
-        let mut text = format!("camera(eye = {}, target = {}", point(camera.eye), point(target));
+        let mut text = format!(
+            "camera(eye = {}, target = {}",
+            point(camera.eye),
+            point(target)
+        );
         let level = Camera::look_at(camera.eye, target, Vec3::Y, camera.lens);
         if !level.is_some_and(|c| c.axes.abs_diff_eq(camera.axes, 1e-5)) {
             text += &format!(", up = {}", point(camera.axes.y_axis));
@@ -274,8 +280,16 @@ mod tests {
 
     fn rig() -> Rig {
         let lens = Lens::Pinhole { fov: 0.7 };
-        let camera = Camera::look_at(Vec3::new(3.0, 2.0, 4.0), Vec3::new(0.0, 0.5, 0.0), Vec3::Y, lens);
-        Rig::new(&camera.unwrap(), Some(Aabb::new([-1.0, -0.5, -1.0], [1.0, 1.5, 1.0])))
+        let camera = Camera::look_at(
+            Vec3::new(3.0, 2.0, 4.0),
+            Vec3::new(0.0, 0.5, 0.0),
+            Vec3::Y,
+            lens,
+        );
+        Rig::new(
+            &camera.unwrap(),
+            Some(Aabb::new([-1.0, -0.5, -1.0], [1.0, 1.5, 1.0])),
+        )
     }
 
     fn orthographic() -> Rig {
@@ -299,7 +313,13 @@ mod tests {
     fn orbits_keep_their_distance_and_stay_level() {
         let mut rig = rig();
         let pivot = rig.pivot();
-        for (right, down) in [(0.3, 0.1), (-1.2, -0.4), (2.0, 3.0), (0.1, -7.0), (0.5, 0.2)] {
+        for (right, down) in [
+            (0.3, 0.1),
+            (-1.2, -0.4),
+            (2.0, 3.0),
+            (0.1, -7.0),
+            (0.5, 0.2),
+        ] {
             rig.orbit(right, down);
             assert!((rig.pivot() - pivot).length() < 1e-9);
             assert!(rig.axes.x_axis.y.abs() < 1e-9, "it rolled: {:?}", rig.axes);
@@ -323,7 +343,10 @@ mod tests {
             let pivot = rig.pivot();
             rig.pan(30.0, -12.0, 300.0);
             let (x, y) = place(&rig, pivot);
-            assert!((x - 30.0).abs() < 1e-3 && (y - 12.0).abs() < 1e-3, "{x} {y}");
+            assert!(
+                (x - 30.0).abs() < 1e-3 && (y - 12.0).abs() < 1e-3,
+                "{x} {y}"
+            );
         }
     }
 
@@ -362,14 +385,24 @@ mod tests {
     fn framing_shows_every_corner_from_every_side() {
         let bounds = Aabb::new([-3.0, 0.0, 1.0], [1.0, 0.5, 9.0]);
         for start in [rig(), orthographic()] {
-            for side in [Side::Front, Side::Back, Side::Right, Side::Left, Side::Top, Side::Bottom] {
+            for side in [
+                Side::Front,
+                Side::Back,
+                Side::Right,
+                Side::Left,
+                Side::Top,
+                Side::Bottom,
+            ] {
                 for aspect in [0.5, 4.0 / 3.0, 3.0] {
                     let mut rig = start;
                     rig.look_from(side);
                     rig.frame(Some(bounds), aspect);
                     for corner in bounds.corners() {
                         let (x, y) = place(&rig, DVec3::from(corner));
-                        assert!(y.abs() <= 150.0 && x.abs() <= 150.0 * aspect, "{side:?} {aspect}");
+                        assert!(
+                            y.abs() <= 150.0 && x.abs() <= 150.0 * aspect,
+                            "{side:?} {aspect}"
+                        );
                     }
                 }
             }
@@ -404,13 +437,33 @@ mod tests {
         rigs.push(far);
         for rig in rigs {
             let text = format!("show(sphere())\n{}\n", rig.statement());
-            let loaded = load_text("copy.star", &text, Language::Starlark, None, &Options::default());
-            let camera = loaded.unwrap_or_else(|e| panic!("{text}: {e}")).scene.camera;
+            let loaded = load_text(
+                "copy.star",
+                &text,
+                Language::Starlark,
+                None,
+                &Options::default(),
+            );
+            let camera = loaded
+                .unwrap_or_else(|e| panic!("{text}: {e}"))
+                .scene
+                .camera;
             let wanted = rig.camera();
             assert_eq!(camera.eye, wanted.eye, "{text}");
-            assert!(camera.axes.abs_diff_eq(wanted.axes, 2e-5), "{text}: {:?}", camera.axes);
-            assert!((camera.plane_height() - wanted.plane_height()).abs() < 1e-5 * wanted.plane_height());
-            assert_eq!((camera.near, camera.far), (wanted.near, wanted.far), "{text}");
+            assert!(
+                camera.axes.abs_diff_eq(wanted.axes, 2e-5),
+                "{text}: {:?}",
+                camera.axes
+            );
+            assert!(
+                (camera.plane_height() - wanted.plane_height()).abs()
+                    < 1e-5 * wanted.plane_height()
+            );
+            assert_eq!(
+                (camera.near, camera.far),
+                (wanted.near, wanted.far),
+                "{text}"
+            );
         }
     }
 }

@@ -24,8 +24,12 @@ pub(crate) fn default_name(session: &Session) -> String {
 pub(crate) fn save(session: &Session, name: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(name.trim());
     let shown = session.shown.as_ref().ok_or("there is no picture yet")?;
-    let edited = session.comparison.edited.min(shown.sides.len().saturating_sub(1));
-    let (Some(side), Some(look)) = (shown.sides.get(edited), shown.request.looks.get(edited)) else {
+    let edited = session
+        .comparison
+        .edited
+        .min(shown.sides.len().saturating_sub(1));
+    let (Some(side), Some(look)) = (shown.sides.get(edited), shown.request.looks.get(edited))
+    else {
         return Err("there is no picture yet".to_owned());
     };
     let scene = &shown.request.scene;
@@ -41,7 +45,9 @@ pub(crate) fn save(session: &Session, name: &str) -> Result<PathBuf, String> {
                 objects: &names,
             };
             let picture = view.of(&side.film);
-            write_atomically(&path, |writer| png::write(writer, &picture, Depth::Eight, &notes))
+            write_atomically(&path, |writer| {
+                png::write(writer, &picture, Depth::Eight, &notes)
+            })
         }
         Some("exr") => write_atomically(&path, |writer| exr::write(writer, &side.film, &notes)),
         _ => return Err("end the name in .png, or in .exr for all planes".to_owned()),

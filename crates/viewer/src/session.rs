@@ -121,7 +121,9 @@ impl Session {
     pub fn name(&self) -> String {
         match &self.current {
             Some(current) => current.scene.name.clone(),
-            None => (self.path.file_stem()).map_or_else(String::new, |s| s.to_string_lossy().into()),
+            None => {
+                (self.path.file_stem()).map_or_else(String::new, |s| s.to_string_lossy().into())
+            }
         }
     }
 
@@ -148,7 +150,9 @@ impl Session {
         if *setting == parameter.default {
             self.options.set.remove(&parameter.name);
         } else {
-            self.options.set.insert(parameter.name.clone(), written(setting));
+            self.options
+                .set
+                .insert(parameter.name.clone(), written(setting));
         }
     }
 

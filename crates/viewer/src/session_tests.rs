@@ -28,7 +28,10 @@ fn the_last_good_scene_outlives_a_mistake() {
     let before = Arc::clone(&session.current.as_ref().unwrap().scene);
     session.absorb(outcome("show(spere())", &Options::default(), true));
     assert!(session.trouble.as_ref().unwrap().contains("spere"));
-    assert!(Arc::ptr_eq(&before, &session.current.as_ref().unwrap().scene));
+    assert!(Arc::ptr_eq(
+        &before,
+        &session.current.as_ref().unwrap().scene
+    ));
     assert!(session.request([10, 10]).is_some());
     session.absorb(outcome(SCENE, &Options::default(), true));
     assert_eq!(session.trouble, None);
@@ -57,10 +60,17 @@ fn a_camera_that_was_moved_stays_until_the_file_moves_it() {
     session.rig.orbit(0.5, 0.1);
     session.is_free = true;
     let moved = session.rig;
-    session.absorb(outcome(&SCENE.replace("slider(\"r\", 0.5)", "0.7"), &Options::default(), true));
+    session.absorb(outcome(
+        &SCENE.replace("slider(\"r\", 0.5)", "0.7"),
+        &Options::default(),
+        true,
+    ));
     assert_eq!(session.rig, moved);
     let other = SCENE.replace("eye = (0, 0, 5)", "eye = (0, 0, time())");
-    let at = |time| Options { time, ..Options::default() };
+    let at = |time| Options {
+        time,
+        ..Options::default()
+    };
     session.absorb(outcome(&other, &at(7.0), true));
     assert_eq!((session.rig.camera().eye.z, session.is_free), (7.0, false));
     // it follows the time as long as nobody moves it
@@ -126,7 +136,10 @@ fn a_picture_is_asked_for_when_it_is_another_one() {
     assert!(session.to_render([65, 48]).is_some());
     session.is_sliced = true;
     let request = session.to_render([65, 48]).unwrap();
-    assert_eq!((request.looks.len(), request.slice), (1, Some(session.slice)));
+    assert_eq!(
+        (request.looks.len(), request.slice),
+        (1, Some(session.slice))
+    );
     session.comparison.is_on = true;
     assert_eq!(session.to_render([65, 48]).unwrap().looks.len(), 2);
     session.absorb(outcome(SCENE, &Options::default(), true));
@@ -140,12 +153,21 @@ fn framing_shows_all_in_a_window_of_any_shape() {
         session.rig.orbit(0.3, 0.2);
         session.frame_all(size);
         let camera = session.camera(size);
-        let bounds = session.current.as_ref().unwrap().scene.finite_bounds().unwrap();
+        let bounds = session
+            .current
+            .as_ref()
+            .unwrap()
+            .scene
+            .finite_bounds()
+            .unwrap();
         for corner in bounds.corners() {
             let p = camera.axes.transpose() * (glam::DVec3::from(corner).as_vec3() - camera.eye);
             let half = 0.5 * camera.plane_height() * -p.z;
             assert!(p.y.abs() <= half, "{size:?}");
-            assert!(p.x.abs() <= half * size[0] as f32 / size[1] as f32, "{size:?}");
+            assert!(
+                p.x.abs() <= half * size[0] as f32 / size[1] as f32,
+                "{size:?}"
+            );
         }
     }
 }

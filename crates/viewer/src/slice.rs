@@ -36,7 +36,9 @@ impl Slice {
         let Some(bounds) = scene.finite_bounds() else {
             return Aabb::centred([UNBOUNDED; 3]);
         };
-        let largest = (0..3).map(|k| bounds.max[k] - bounds.min[k]).fold(1e-3, f64::max);
+        let largest = (0..3)
+            .map(|k| bounds.max[k] - bounds.min[k])
+            .fold(1e-3, f64::max);
         Aabb {
             min: bounds.min.map(|x| x - AIR * largest),
             max: bounds.max.map(|x| x + AIR * largest),
@@ -48,9 +50,9 @@ impl Slice {
         let t = (self.at as f32 - origin[self.axis]) / direction[self.axis];
         let mut point = origin + direction * t;
         point[self.axis] = self.at as f32;
-        let inside = (0..3).filter(|&k| k != self.axis).all(|k| {
-            (room.min[k]..=room.max[k]).contains(&f64::from(point[k]))
-        });
+        let inside = (0..3)
+            .filter(|&k| k != self.axis)
+            .all(|k| (room.min[k]..=room.max[k]).contains(&f64::from(point[k])));
         (t > 0.0 && t.is_finite() && inside).then_some((t, point))
     }
 }
@@ -78,7 +80,11 @@ impl Cut {
         film: &Film,
         image: &mut ColorImage,
     ) -> Option<f32> {
-        if self.0.as_ref().is_none_or(|c| !Arc::ptr_eq(&c.scene, &request.scene)) {
+        if self
+            .0
+            .as_ref()
+            .is_none_or(|c| !Arc::ptr_eq(&c.scene, &request.scene))
+        {
             self.0 = Compiled::new(&request.scene);
         }
         let compiled = self.0.as_mut()?;
@@ -130,10 +136,12 @@ impl Compiled {
         let (values, slopes) = self.evaluate(&points);
         // lines are as wide on the screen wherever they are: slopes are taken from pixel to pixel
         let across = |s: &[Vec3; 2]| s[0].length().max(s[1].length());
-        let pixel = (steps.iter().map(across).sum::<f32>() / steps.len() as f32).max(f32::MIN_POSITIVE);
-        let slopes = slopes.iter().zip(&steps).map(|(gradient, step)| {
-            gradient.dot(step[0]).hypot(gradient.dot(step[1])) / pixel
-        });
+        let pixel =
+            (steps.iter().map(across).sum::<f32>() / steps.len() as f32).max(f32::MIN_POSITIVE);
+        let slopes = slopes
+            .iter()
+            .zip(&steps)
+            .map(|(gradient, step)| gradient.dot(step[0]).hypot(gradient.dot(step[1])) / pixel);
         let section = Section {
             width: seen.len() as u32,
             height: 1,

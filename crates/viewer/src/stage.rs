@@ -75,7 +75,8 @@ impl Stage {
             let middle = rect.center();
             let ink = ui.visuals().weak_text_color();
             let font = FontId::proportional(14.0);
-            ui.painter().text(middle, Align2::CENTER_CENTER, "Loading", font, ink);
+            ui.painter()
+                .text(middle, Align2::CENTER_CENTER, "Loading", font, ink);
         }
     }
 
@@ -85,7 +86,8 @@ impl Stage {
             let x = |share| rect.left() + share * rect.width();
             let part = Rect::from_min_max(pos2(x(from), rect.top()), pos2(x(to), rect.bottom()));
             let uv = Rect::from_min_max(pos2(from, 0.0), pos2(to, 1.0));
-            ui.painter().image(texture.id(), part, uv.intersect(whole), Color32::WHITE);
+            ui.painter()
+                .image(texture.id(), part, uv.intersect(whole), Color32::WHITE);
         };
         match (&self.textures, session.comparison.is_on) {
             ([Some(a), Some(b)], true) => {
@@ -114,7 +116,10 @@ impl Stage {
                 session.rig.orbit(yaw, pitch);
             }
             session.is_free = true;
-        } else if moved && (response.dragged_by(PointerButton::Primary) || pans.iter().any(|b| response.dragged_by(*b))) {
+        } else if moved
+            && (response.dragged_by(PointerButton::Primary)
+                || pans.iter().any(|b| response.dragged_by(*b)))
+        {
             session.rig.pan(right, down, height);
             session.is_free = true;
         }
@@ -146,7 +151,10 @@ impl Stage {
         let camera = session.camera(size);
         let place = [share[0] * size[0] as f32, share[1] * size[1] as f32];
         let (origin, direction) = camera.ray(place[0], place[1], size);
-        let seen = session.shown.as_ref().and_then(|s| depth(&s.sides.first()?.film, share));
+        let seen = session
+            .shown
+            .as_ref()
+            .and_then(|s| depth(&s.sides.first()?.film, share));
         let far = seen.unwrap_or(session.rig.distance() as f32);
         (origin + direction * far).as_dvec3()
     }
@@ -158,7 +166,12 @@ impl Stage {
         };
         let side = usize::from(session.comparison.is_on && share[0] > session.comparison.divider);
         session.picked = shown.sides.get(side).and_then(|exposed| {
-            pick(&exposed.film, &shown.request.camera, &shown.request.scene, share)
+            pick(
+                &exposed.film,
+                &shown.request.camera,
+                &shown.request.scene,
+                share,
+            )
         });
     }
 }
@@ -198,24 +211,36 @@ fn divider(ui: &mut Ui, session: &mut Session, rect: Rect) -> bool {
     }
     comparison.divider = comparison.divider.clamp(0.0, 1.0);
     let share = comparison.divider;
-    response.widget_info(|| {
-        WidgetInfo::slider(true, f64::from(share), "Divider between A and B")
-    });
+    response.widget_info(|| WidgetInfo::slider(true, f64::from(share), "Divider between A and B"));
     let response = response.on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
     let x = rect.left() + share * rect.width();
     let palette = Palette::of(ui.visuals());
     let is_held = response.hovered() || response.dragged() || response.has_focus();
-    let ink = if is_held { palette.accent } else { Color32::WHITE };
+    let ink = if is_held {
+        palette.accent
+    } else {
+        Color32::WHITE
+    };
     let painter = ui.painter();
     let shadow = Stroke::new(4.0, Color32::from_black_alpha(70));
     painter.vline(x, rect.y_range(), shadow);
     painter.vline(x, rect.y_range(), Stroke::new(2.0, ink));
     painter.circle(pos2(x, rect.center().y), 8.0, ink, shadow);
     for (side, name) in [(-1.0, "A"), (1.0, "B")] {
-        let align = if side < 0.0 { Align2::RIGHT_TOP } else { Align2::LEFT_TOP };
-        let at = pos2(x + side * 14.0, rect.top() + 12.0);
+        let align = if side < 0.0 {
+            Align2::RIGHT_BOTTOM
+        } else {
+            Align2::LEFT_BOTTOM
+        };
+        let at = pos2(x + side * 14.0, rect.bottom() - 12.0);
         let font = FontId::proportional(15.0);
-        painter.text(at + vec2(1.0, 1.0), align, name, font.clone(), Color32::from_black_alpha(160));
+        painter.text(
+            at + vec2(1.0, 1.0),
+            align,
+            name,
+            font.clone(),
+            Color32::from_black_alpha(160),
+        );
         painter.text(at, align, name, font, Color32::WHITE);
     }
     response.dragged()
@@ -231,7 +256,11 @@ pub(crate) fn flight(ctx: &Context) -> DVec3 {
             return DVec3::ZERO;
         }
         let along = |more, less| f64::from(i8::from(i.key_down(more)) - i8::from(i.key_down(less)));
-        let way = DVec3::new(along(Key::D, Key::A), along(Key::E, Key::Q), along(Key::S, Key::W));
+        let way = DVec3::new(
+            along(Key::D, Key::A),
+            along(Key::E, Key::Q),
+            along(Key::S, Key::W),
+        );
         way.normalize_or_zero() * if i.modifiers.shift { 3.0 } else { 1.0 }
     })
 }
@@ -240,7 +269,11 @@ pub(crate) fn flight(ctx: &Context) -> DVec3 {
 pub(crate) fn cards(ui: &mut Ui, session: &mut Session, rect: Rect) {
     use eframe::egui::{Area, Order};
     let place = |name: &str, align: Align2, corner: Pos2| {
-        Area::new(Id::unique(name)).order(Order::Middle).pivot(align).fixed_pos(corner).constrain_to(rect)
+        Area::new(Id::unique(name))
+            .order(Order::Middle)
+            .pivot(align)
+            .fixed_pos(corner)
+            .constrain_to(rect)
     };
     let inner = rect.shrink(14.0);
     if session.trouble.is_some() {
@@ -256,7 +289,8 @@ pub(crate) fn cards(ui: &mut Ui, session: &mut Session, rect: Rect) {
     }
     if let Some(key) = session.key().cloned() {
         let area = place("legend card", Align2::RIGHT_BOTTOM, inner.right_bottom());
-        area.interactable(false).show(ui.ctx(), |ui| panel::legend(ui, &key));
+        area.interactable(false)
+            .show(ui.ctx(), |ui| panel::legend(ui, &key));
     }
 }
 
@@ -267,9 +301,14 @@ mod tests {
     #[test]
     fn pictures_lie_on_pixels() {
         for scale in [1.0, 1.25, 1.5, 2.0, 2.625] {
-            let rect = snapped(Rect::from_min_max(pos2(0.3, 36.7), pos2(811.4, 600.2)), scale);
+            let rect = snapped(
+                Rect::from_min_max(pos2(0.3, 36.7), pos2(811.4, 600.2)),
+                scale,
+            );
             let size = rect.size() * scale;
-            assert!((size.x - size.x.round()).abs() < 1e-2 && (size.y - size.y.round()).abs() < 1e-2);
+            assert!(
+                (size.x - size.x.round()).abs() < 1e-2 && (size.y - size.y.round()).abs() < 1e-2
+            );
         }
     }
 }

@@ -56,7 +56,11 @@ pub(crate) fn apply(ctx: &Context) {
 }
 
 fn dress(style: &mut Style, dark: bool) {
-    let mut visuals = if dark { Visuals::dark() } else { Visuals::light() };
+    let mut visuals = if dark {
+        Visuals::dark()
+    } else {
+        Visuals::light()
+    };
     let palette = Palette::of(&visuals);
     let grey = |level: u8| {
         if dark {
@@ -66,10 +70,21 @@ fn dress(style: &mut Style, dark: bool) {
             Color32::from_rgb(level.saturating_sub(3), level.saturating_sub(1), level)
         }
     };
-    let (panel, quiet, hover, press) =
-        if dark { (30, 44, 56, 66) } else { (8, 24, 34, 44) };
-    let text = if dark { Color32::from_gray(214) } else { Color32::from_gray(38) };
-    let strong = if dark { Color32::from_gray(244) } else { Color32::from_gray(12) };
+    let (panel, quiet, hover, press) = if dark {
+        (30, 44, 56, 66)
+    } else {
+        (8, 24, 34, 44)
+    };
+    let text = if dark {
+        Color32::from_gray(214)
+    } else {
+        Color32::from_gray(38)
+    };
+    let strong = if dark {
+        Color32::from_gray(244)
+    } else {
+        Color32::from_gray(12)
+    };
     visuals.panel_fill = grey(panel);
     visuals.window_fill = grey(panel);
     visuals.window_stroke = Stroke::new(1.0, palette.edge);
@@ -82,14 +97,24 @@ fn dress(style: &mut Style, dark: bool) {
         color: Color32::from_black_alpha(if dark { 110 } else { 50 }),
     };
     visuals.popup_shadow = visuals.window_shadow;
-    visuals.extreme_bg_color = if dark { Color32::from_rgb(20, 21, 24) } else { Color32::WHITE };
+    visuals.extreme_bg_color = if dark {
+        Color32::from_rgb(20, 21, 24)
+    } else {
+        Color32::WHITE
+    };
     visuals.hyperlink_color = palette.accent;
     visuals.error_fg_color = palette.wrong;
-    visuals.selection.bg_fill = palette.accent.gamma_multiply(if dark { 0.42 } else { 0.28 });
+    visuals.selection.bg_fill = palette
+        .accent
+        .gamma_multiply(if dark { 0.42 } else { 0.28 });
     visuals.selection.stroke = Stroke::new(1.0, strong);
     visuals.slider_trailing_fill = true;
     visuals.indent_has_left_vline = false;
-    visuals.weak_text_color = Some(if dark { Color32::from_gray(152) } else { Color32::from_gray(96) });
+    visuals.weak_text_color = Some(if dark {
+        Color32::from_gray(152)
+    } else {
+        Color32::from_gray(96)
+    });
     let widgets = &mut visuals.widgets;
     widgets.noninteractive.fg_stroke = Stroke::new(1.0, text);
     widgets.noninteractive.bg_stroke = Stroke::new(1.0, grey(quiet));

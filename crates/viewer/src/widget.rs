@@ -41,7 +41,11 @@ pub(crate) fn row<R>(
                 ui.add(label)
             })
             .inner;
-        let label = if about.is_empty() { label } else { label.on_hover_text(about) };
+        let label = if about.is_empty() {
+            label
+        } else {
+            label.on_hover_text(about)
+        };
         let inner = control(ui);
         (label, inner)
     })
@@ -57,7 +61,11 @@ pub(crate) fn slide(ui: &mut Ui, name: &str, about: &str, slider: Slider<'_>) ->
         ui.add(slider.clamping(SliderClamping::Edits))
     });
     let response = response.labelled_by(label.id);
-    if about.is_empty() { response } else { response.on_hover_text(about) }
+    if about.is_empty() {
+        response
+    } else {
+        response.on_hover_text(about)
+    }
 }
 
 /// A switch.
@@ -136,7 +144,9 @@ fn pop_up<T>(
                 }
                 for (i, method) in methods.iter().enumerate() {
                     let entry = ui.selectable_label(place == Some(i), method.name);
-                    let about = format!("{}\n{}", method.about, method.source);
+                    let about = format!("{}\n{}", method.about, method.source)
+                        .trim_end()
+                        .to_owned();
                     if entry.on_hover_text(about).clicked() {
                         chosen = Some(Some(i));
                     }
@@ -154,13 +164,12 @@ fn pop_up<T>(
 
 /// What a method does and where it comes from.
 fn explain<T>(ui: &mut Ui, method: &Method<T>) {
-    let text = format!("{} {}", method.about, sentence(method.source));
+    let text = match method.source {
+        "" => method.about.to_owned(),
+        source => format!("{} [{source}]", method.about),
+    };
     ui.label(RichText::new(text).small().weak());
     ui.add_space(1.0);
-}
-
-fn sentence(source: &str) -> String {
-    format!("[{source}]")
 }
 
 /// Text that is worth less than other text.

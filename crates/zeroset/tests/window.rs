@@ -22,14 +22,14 @@ const SCREEN: (usize, usize) = (1280, 800);
 /// Left of here is the picture, right of here the panel.
 const PANEL: usize = 940;
 /// The slider of the only parameter: its ends, and its height on the screen.
-const SLIDER: (i32, i32, i32) = (1080, 1180, 116);
+const SLIDER: (i32, i32, i32) = (1083, 1188, 98);
 
-/// A red ball at the left, a green box at the right, a blue sky.
+/// A red ball at the left, a green box at the right, before a grey sky.
 const SCENE: &str = "size = slider(\"size\", 0.4, min = 0.2, max = 1.0)
 show(sphere(size).move(x = -0.8), material(color = \"#e00000\", specular = 0))
 show(box(0.8).move(x = 0.8), material(color = \"#00d000\", specular = 0))
 camera(eye = (0, 0, 5), target = (0, 0, 0), fov = 40)
-sky(color = \"#1020c0\", ambient = 1)
+sky(color = \"#8c98a4\", ambient = 0.7)
 ";
 
 /// What is on the screen.
@@ -39,7 +39,11 @@ struct Shot {
 
 impl Shot {
     /// Pixels of a part of the screen that look so: their number, and their middle.
-    fn count(&self, columns: std::ops::Range<usize>, like: impl Fn([u8; 3]) -> bool) -> (usize, f64) {
+    fn count(
+        &self,
+        columns: std::ops::Range<usize>,
+        like: impl Fn([u8; 3]) -> bool,
+    ) -> (usize, f64) {
         let (mut count, mut sum) = (0, 0.0);
         for (i, rgb) in self.rgb.iter().enumerate() {
             let x = i % SCREEN.0;
@@ -52,21 +56,29 @@ impl Shot {
     }
 
     fn red(&self) -> (usize, f64) {
-        self.count(0..PANEL, |[r, g, b]| r > 90 && u32::from(r) > 3 * u32::from(g.max(b)))
+        self.count(0..PANEL, |[r, g, b]| {
+            r > 90 && u32::from(r) > 3 * u32::from(g.max(b))
+        })
     }
 
     fn green(&self) -> (usize, f64) {
-        self.count(0..PANEL, |[r, g, b]| g > 90 && u32::from(g) > 3 * u32::from(r.max(b)))
+        self.count(0..PANEL, |[r, g, b]| {
+            g > 90 && u32::from(g) > 3 * u32::from(r.max(b))
+        })
     }
 
     fn yellow(&self) -> usize {
-        self.count(0..PANEL, |[r, g, b]| r > 90 && g > 90 && b < 40).0
+        self.count(0..PANEL, |[r, g, b]| r > 90 && g > 90 && b < 40)
+            .0
     }
 
     /// The edge of the card that says what is wrong.
     fn wrong(&self) -> usize {
         let near = |a: u8, b: u8| a.abs_diff(b) < 14;
-        self.count(0..PANEL, |[r, g, b]| near(r, 240) && near(g, 120) && near(b, 110)).0
+        self.count(0..PANEL, |[r, g, b]| {
+            near(r, 240) && near(g, 120) && near(b, 110)
+        })
+        .0
     }
 }
 
@@ -111,7 +123,9 @@ impl Window {
             .spawn()
             .unwrap();
         let mut number = String::new();
-        BufReader::new(screen.stdout.take().unwrap()).read_line(&mut number).unwrap();
+        BufReader::new(screen.stdout.take().unwrap())
+            .read_line(&mut number)
+            .unwrap();
         let display = format!(":{}", number.trim());
         let mut window = Window {
             folder,
@@ -151,13 +165,19 @@ impl Window {
             let program = self.program.as_mut().unwrap();
             if let Some(status) = program.try_wait().unwrap() {
                 let mut said = String::new();
-                program.stderr.take().unwrap().read_to_string(&mut said).unwrap();
+                program
+                    .stderr
+                    .take()
+                    .unwrap()
+                    .read_to_string(&mut said)
+                    .unwrap();
                 if said.contains("no graphics device") {
                     return Err(Missing::Device(said));
                 }
                 panic!("the program ended with {status}: {said}");
             }
-            let found = self.xdotool(&["search", "--onlyvisible", "--name", "scene.star - Zeroset"]);
+            let found =
+                self.xdotool(&["search", "--onlyvisible", "--name", "scene.star - Zeroset"]);
             if let Some(id) = found.lines().next().filter(|id| !id.is_empty()) {
                 // there is no window manager: nothing else gives it the keyboard, and its place
                 self.xdotool(&["windowmove", id, "0", "0"]);
@@ -171,7 +191,10 @@ impl Window {
 
     fn xdotool(&self, arguments: &[&str]) -> String {
         let mut command = Command::new("xdotool");
-        let output = command.args(arguments).env("DISPLAY", &self.display).output();
+        let output = command
+            .args(arguments)
+            .env("DISPLAY", &self.display)
+            .output();
         String::from_utf8_lossy(&output.unwrap().stdout).into_owned()
     }
 
@@ -189,8 +212,17 @@ impl Window {
         let info = reader.next_frame(&mut bytes).ok()?;
         assert_eq!((info.width as usize, info.height as usize), SCREEN);
         let channels = info.color_type.samples();
-        let pixel = |p: &[u8]| if channels < 3 { [p[0]; 3] } else { [p[0], p[1], p[2]] };
-        let rgb = bytes[..info.buffer_size()].chunks_exact(channels).map(pixel).collect();
+        let pixel = |p: &[u8]| {
+            if channels < 3 {
+                [p[0]; 3]
+            } else {
+                [p[0], p[1], p[2]]
+            }
+        };
+        let rgb = bytes[..info.buffer_size()]
+            .chunks_exact(channels)
+            .map(pixel)
+            .collect();
         Some(Shot { rgb })
     }
 
@@ -210,8 +242,15 @@ impl Window {
             if begun.elapsed() > PATIENCE {
                 let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("window.png");
                 let mut command = Command::new("import");
-                let _ = command.args(["-window", "root"]).arg(&path).env("DISPLAY", &self.display).status();
-                panic!("waited in vain for {what}; the screen is in {}", path.display());
+                let _ = command
+                    .args(["-window", "root"])
+                    .arg(&path)
+                    .env("DISPLAY", &self.display)
+                    .status();
+                panic!(
+                    "waited in vain for {what}; the screen is in {}",
+                    path.display()
+                );
             }
             std::thread::sleep(PAUSE);
         }
@@ -251,8 +290,11 @@ fn a_scene_is_opened_turned_changed_broken_and_mended() {
         }
     };
     let shot = window.until("the scene", |s| s.red().0 > 2000 && s.green().0 > 4000);
-    let (small, left) = shot.red();
-    assert!(left + 100.0 < shot.green().1, "the ball is not left of the box");
+    let ((small, left), (wide, _)) = (shot.red(), shot.green());
+    assert!(
+        left + 100.0 < shot.green().1,
+        "the ball is not left of the box"
+    );
 
     // half a turn to the right: what was left is right
     window.drag((300, 300), (300 + 740, 300));
@@ -260,16 +302,20 @@ fn a_scene_is_opened_turned_changed_broken_and_mended() {
         s.red().0 > 1000 && s.green().0 > 1000 && s.red().1 > s.green().1 + 100.0
     });
     window.xdotool(&["key", "Home"]);
-    window.until("the camera to come back", |s| s.red().1 + 100.0 < s.green().1);
+    window.until("the camera to come back", |s| {
+        s.red().1 + 100.0 < s.green().1
+    });
 
     let (low, high, y) = SLIDER;
     window.drag((low + (high - low) / 4, y), (high, y));
     let shot = window.until("a larger ball", |s| s.red().0 > 2 * small);
-    assert_eq!(shot.wrong(), 0);
+    assert!(shot.wrong() < 100);
 
     let yellow = SCENE.replace("#e00000", "#e0d000");
     window.save(&yellow);
-    window.until("a yellow ball", |s| s.yellow() > 2 * small && s.red().0 < small / 4);
+    window.until("a yellow ball", |s| {
+        s.yellow() > 2 * small && s.red().0 < small / 4
+    });
 
     window.save(&yellow.replace("show(box(0.8)", "show(bocks(0.8)"));
     let shot = window.until("the mistake", |s| s.wrong() > 500);
@@ -278,7 +324,15 @@ fn a_scene_is_opened_turned_changed_broken_and_mended() {
 
     window.save(&SCENE.replace("show(box(0.8).move(x = 0.8)", "show(box(0.3).move(x = 0.8)"));
     window.until("the mended scene", |s| {
-        s.wrong() == 0 && s.yellow() < 100 && s.red().0 > small && s.green().0 < 3000
+        s.wrong() < 100 && s.yellow() < 100 && s.red().0 > small && s.green().0 < wide / 3
     });
-    assert!(window.program.as_mut().unwrap().try_wait().unwrap().is_none());
+    assert!(
+        window
+            .program
+            .as_mut()
+            .unwrap()
+            .try_wait()
+            .unwrap()
+            .is_none()
+    );
 }

@@ -8,7 +8,8 @@ use eframe::egui::{RichText, Ui};
 /// Buttons for what the keys do too, and the camera as text.
 pub fn camera(ui: &mut Ui, session: &mut Session, size: [u32; 2]) {
     ui.horizontal_wrapped(|ui| {
-        let button = |ui: &mut Ui, name: &str, about: &str| ui.button(name).on_hover_text(about).clicked();
+        let button =
+            |ui: &mut Ui, name: &str, about: &str| ui.button(name).on_hover_text(about).clicked();
         if button(ui, "Frame all", "Shows everything that has an end (F).") {
             session.frame_all(size);
         }
@@ -32,11 +33,17 @@ pub fn camera(ui: &mut Ui, session: &mut Session, size: [u32; 2]) {
             ui.ctx().copy_text(statement);
         }
         let back = ui.add_enabled(session.is_free, eframe::egui::Button::new("As in the file"));
-        if back.on_hover_text("Puts the camera where the file has it.").clicked() {
+        if back
+            .on_hover_text("Puts the camera where the file has it.")
+            .clicked()
+        {
             session.reset_camera();
         }
     });
     if session.is_free {
-        aside(ui, "The camera stays where it is when a slider or the time moves the file's.");
+        aside(
+            ui,
+            "The camera stays where it is when a slider or the time moves the file's.",
+        );
     }
 }

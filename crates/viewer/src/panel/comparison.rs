@@ -7,10 +7,18 @@ use eframe::egui::Ui;
 /// Turns the comparison on, and says which look is changed.
 pub fn comparison(ui: &mut Ui, session: &mut Session) {
     let mut on = session.comparison.is_on;
-    switch(ui, "Show A and B", "Two settings beside each other (C).", &mut on);
+    switch(
+        ui,
+        "Show A and B",
+        "Two settings beside each other (C).",
+        &mut on,
+    );
     set_comparison(session, on);
     if !session.comparison.is_on {
-        aside(ui, "Two settings of one scene, with a divider that can be dragged.");
+        aside(
+            ui,
+            "Two settings of one scene, with a divider that can be dragged.",
+        );
         return;
     }
     ui.horizontal(|ui| {
@@ -20,7 +28,11 @@ pub fn comparison(ui: &mut Ui, session: &mut Session) {
         }
     });
     ui.horizontal(|ui| {
-        if ui.button("Swap").on_hover_text("A becomes B and B becomes A.").clicked() {
+        if ui
+            .button("Swap")
+            .on_hover_text("A becomes B and B becomes A.")
+            .clicked()
+        {
             session.looks.swap(0, 1);
         }
         let edited = session.comparison.edited.min(1);

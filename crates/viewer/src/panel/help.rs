@@ -12,10 +12,16 @@ pub const KEYS: &[(&str, &str)] = &[
     ("W A S D, Q E", "fly; with Shift faster"),
     ("Alt + drag, or drag while flying", "look around"),
     ("F", "frame everything"),
-    ("1, 3, 7", "from the front, the right, the top; with Ctrl the other side"),
+    (
+        "1, 3, 7",
+        "from the front, the right, the top; with Ctrl the other side",
+    ),
     ("Home", "where the file has the camera"),
     ("Picture", ""),
-    ("Click", "what is there: object, material, point, line in the file"),
+    (
+        "Click",
+        "what is there: object, material, point, line in the file",
+    ),
     ("C", "compare two settings; the divider can be dragged"),
     ("X", "a plane through the field"),
     ("V", "the next view: picture, steps, occlusion, ..."),
@@ -39,17 +45,20 @@ pub fn help(ctx: &Context, is_open: &mut bool) {
         .anchor(eframe::egui::Align2::CENTER_CENTER, [0.0, 0.0])
         .show(ctx, |ui| {
             ScrollArea::vertical().max_height(560.0).show(ui, |ui| {
-                Grid::new("keys").num_columns(2).spacing([28.0, 6.0]).show(ui, |ui| {
-                    for (key, what) in KEYS {
-                        if what.is_empty() {
-                            ui.label(RichText::new(*key).small().weak());
-                        } else {
-                            ui.label(RichText::new(*key).strong());
-                            ui.label(*what);
+                Grid::new("keys")
+                    .num_columns(2)
+                    .spacing([28.0, 6.0])
+                    .show(ui, |ui| {
+                        for (key, what) in KEYS {
+                            if what.is_empty() {
+                                ui.label(RichText::new(*key).small().weak());
+                            } else {
+                                ui.label(RichText::new(*key).strong());
+                                ui.label(*what);
+                            }
+                            ui.end_row();
                         }
-                        ui.end_row();
-                    }
-                });
+                    });
             });
         });
 }

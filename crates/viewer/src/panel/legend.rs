@@ -13,7 +13,11 @@ pub fn legend(ui: &mut Ui, key: &Key) {
     let palette = Palette::of(ui.visuals());
     card(&palette).show(ui, |ui| {
         let (ink, line) = (ui.visuals().text_color(), 16.0);
-        let below = if key.nothing.is_some() { line + 8.0 } else { 0.0 };
+        let below = if key.nothing.is_some() {
+            line + 8.0
+        } else {
+            0.0
+        };
         let size = vec2(BAR.x + 62.0, line + 10.0 + BAR.y + below + 4.0);
         let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
         let said = format!("Legend: {}", key.title);
@@ -29,7 +33,10 @@ pub fn legend(ui: &mut Ui, key: &Key) {
         for i in 0..count {
             let (low, high) = (i as f32 / count as f32, (i + 1) as f32 / count as f32);
             let y = |share: f32| bar.bottom() - share * bar.height();
-            let piece = Rect::from_min_max(Pos2::new(bar.left(), y(high)), Pos2::new(bar.right(), y(low)));
+            let piece = Rect::from_min_max(
+                Pos2::new(bar.left(), y(high)),
+                Pos2::new(bar.right(), y(low)),
+            );
             painter.rect_filled(piece, 0.0, shade((key.colours)(0.5 * (low + high))));
         }
         for (place, text) in &key.ticks {

@@ -9,7 +9,9 @@ use zeroset_scene::settings::{Antialias, Settings};
 pub fn view(ui: &mut Ui, session: &mut Session) {
     let look = session.edited();
     choose(ui, "Show", &mut look.plane);
-    let slider = Slider::new(&mut look.settings.exposure, -6.0..=6.0).max_decimals(2).suffix(" EV");
+    let slider = Slider::new(&mut look.settings.exposure, -6.0..=6.0)
+        .max_decimals(2)
+        .suffix(" EV");
     slide(ui, "Exposure", "Stops brighter or darker.", slider);
 }
 
@@ -41,14 +43,26 @@ pub fn methods(ui: &mut Ui, session: &mut Session) {
             choose(ui, "Filter", filter);
         }
         let slider = Slider::new(&mut look.settings.seed, 0..=99);
-        slide(ui, "Seed", "Other random numbers for all that samples.", slider);
+        slide(
+            ui,
+            "Seed",
+            "Other random numbers for all that samples.",
+            slider,
+        );
         let about = "Goes on to 64 rays a pixel while nothing changes.";
         switch(ui, "Refine at rest", about, &mut refine);
     });
-    let changed = Settings { size: stated.size, ..look.settings } != stated || look.shadow.is_some();
+    let changed = Settings {
+        size: stated.size,
+        ..look.settings
+    } != stated
+        || look.shadow.is_some();
     ui.add_space(4.0);
     let reset = ui.add_enabled(changed, eframe::egui::Button::new("As in the file"));
-    if reset.on_hover_text("Puts every method back to what the file states.").clicked() {
+    if reset
+        .on_hover_text("Puts every method back to what the file states.")
+        .clicked()
+    {
         look.settings = stated;
         look.shadow = None;
     }
@@ -59,11 +73,14 @@ pub fn methods(ui: &mut Ui, session: &mut Session) {
 fn hits(ui: &mut Ui, settings: &mut Settings) {
     let slider = Slider::new(&mut settings.max_steps, 1..=2048).logarithmic(true);
     slide(ui, "Most steps", "Steps that a ray may take.", slider);
-    let slider = Slider::new(&mut settings.footprint, 0.05..=4.0).logarithmic(true).max_decimals(2);
+    let slider = Slider::new(&mut settings.footprint, 0.05..=4.0)
+        .logarithmic(true)
+        .max_decimals(2);
     let about = "A hit is nearer to the surface than so many pixel widths.";
     slide(ui, "Hit within", about, slider);
     let slider = Slider::new(&mut settings.discontinuity_reduction, 0..=8);
-    let about = "Steps that put a hit where its pixel meets the surface (Keinert et al. 2014, 3.4).";
+    let about =
+        "Steps that put a hit where its pixel meets the surface (Keinert et al. 2014, 3.4).";
     slide(ui, "Hit repair", about, slider);
     let about = "A ray that runs out of steps takes its best candidate (Keinert et al. 2014, 3.2).";
     switch(ui, "Hit selection", about, &mut settings.hit_selection);

@@ -23,7 +23,10 @@ pub fn parameters(ui: &mut Ui, session: &mut Session) {
     }
     let moved = !session.options.set.is_empty();
     let reset = ui.add_enabled(moved, eframe::egui::Button::new("Reset all"));
-    if reset.on_hover_text("Gives every parameter its default.").clicked() {
+    if reset
+        .on_hover_text("Gives every parameter its default.")
+        .clicked()
+    {
         for parameter in &all {
             session.reset(&parameter.name);
         }
@@ -34,7 +37,9 @@ pub fn parameters(ui: &mut Ui, session: &mut Session) {
 fn control(ui: &mut Ui, parameter: &Parameter, before: &Setting) -> Option<Setting> {
     let name = &parameter.name;
     let place = parameter.place.as_ref();
-    let about = place.map_or_else(String::new, |(file, line, _)| format!("{name} ({file}:{line})"));
+    let about = place.map_or_else(String::new, |(file, line, _)| {
+        format!("{name} ({file}:{line})")
+    });
     match (&parameter.control, before) {
         (Control::Slider { min, max }, Setting::Number(x)) => {
             let mut x = *x;

@@ -3,7 +3,7 @@
 use crate::session::Session;
 use crate::style::Palette;
 use crate::widget::row;
-use eframe::egui::{Color32, Frame, Margin, RichText, Sense, Stroke, Ui, vec2};
+use eframe::egui::{Color32, Frame, Label, Margin, RichText, Sense, Stroke, Ui, vec2};
 use glam::Vec3;
 use zeroset_output::tone;
 
@@ -15,27 +15,46 @@ pub fn picked(ui: &mut Ui, session: &mut Session) -> bool {
     let palette = Palette::of(ui.visuals());
     let mut is_closed = false;
     card(&palette).show(ui, |ui| {
-        ui.set_width(292.0);
+        ui.set_width(330.0);
         ui.horizontal(|ui| {
-            let [r, g, b] = picked.colour.to_array().map(|c| (tone::encode(c) * 255.0).round() as u8);
+            let [r, g, b] = picked
+                .colour
+                .to_array()
+                .map(|c| (tone::encode(c) * 255.0).round() as u8);
             let (rect, _) = ui.allocate_exact_size(vec2(14.0, 14.0), Sense::hover());
-            ui.painter().rect_filled(rect, 4.0, Color32::from_rgb(r, g, b));
-            let name = if picked.name.parse::<u64>().is_ok() { format!("Object {}", picked.name) } else { picked.name.clone() };
+            ui.painter()
+                .rect_filled(rect, 4.0, Color32::from_rgb(r, g, b));
+            let name = if picked.name.parse::<u64>().is_ok() {
+                format!("Object {}", picked.name)
+            } else {
+                picked.name.clone()
+            };
             ui.label(RichText::new(name).strong());
-            ui.with_layout(eframe::egui::Layout::right_to_left(eframe::egui::Align::Center), |ui| {
-                let close = ui.small_button("×").accessible_name("Close the card");
-                is_closed = close.on_hover_text("Closes this card (Esc).").clicked();
-            });
+            ui.with_layout(
+                eframe::egui::Layout::right_to_left(eframe::egui::Align::Center),
+                |ui| {
+                    let close = ui.small_button("×").accessible_name("Close the card");
+                    is_closed = close.on_hover_text("Closes this card (Esc).").clicked();
+                },
+            );
         });
         if let Some(place) = picked.whereabouts() {
-            row(ui, "In the file", "Where it is shown: file, line, column.", |ui| {
-                if ui.link(&place).on_hover_text("Copies the place.").clicked() {
-                    ui.ctx().copy_text(place.clone());
-                }
-            });
+            row(
+                ui,
+                "In the file",
+                "Where it is shown: file, line, column.",
+                |ui| {
+                    if ui.link(&place).on_hover_text("Copies the place.").clicked() {
+                        ui.ctx().copy_text(place.clone());
+                    }
+                },
+            );
         }
         let fact = |ui: &mut Ui, name: &str, text: String| {
-            row(ui, name, "", |ui| ui.label(text));
+            row(ui, name, "", |ui| {
+                ui.add(Label::new(text.as_str()).truncate())
+                    .on_hover_text(text);
+            });
         };
         fact(ui, "Material", picked.material.clone());
         fact(ui, "Point", spoken(picked.point));

@@ -10,7 +10,10 @@ pub fn slice(ui: &mut Ui, session: &mut Session) {
     let about = "Draws the distance to the surface on a plane (X).";
     switch(ui, "Show the plane", about, &mut session.is_sliced);
     if !session.is_sliced {
-        aside(ui, "Blue is inside, red outside; lines join points of equal distance.");
+        aside(
+            ui,
+            "Blue is inside, red outside; lines join points of equal distance.",
+        );
         return;
     }
     let before = session.slice.axis;

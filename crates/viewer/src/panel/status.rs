@@ -15,21 +15,35 @@ pub fn status(ui: &mut Ui, session: &Session) {
             Some(shown) => {
                 let [width, height] = shown.rung.size;
                 let samples = shown.rung.samples();
-                let rays = if samples == 1 { "1 ray a pixel".to_owned() } else { format!("{samples} rays a pixel") };
+                let rays = if samples == 1 {
+                    "1 ray a pixel".to_owned()
+                } else {
+                    format!("{samples} rays a pixel")
+                };
                 let evaluations = shown.evaluations.total() as f64 / shown.rays.max(1) as f64;
                 let about = |name: &str| format!("{name} of the picture that is shown");
-                ui.label(quiet(spoken(shown.seconds))).on_hover_text(about("Rendering time"));
+                ui.label(quiet(spoken(shown.seconds)))
+                    .on_hover_text(about("Rendering time"));
                 ui.label(quiet(format!("{evaluations:.1} evaluations a ray")))
                     .on_hover_text("Evaluations of the field, of all stages, for each primary ray");
-                ui.label(quiet(format!("{width} x {height}"))).on_hover_text(about("Pixels"));
+                ui.label(quiet(format!("{width} x {height}")))
+                    .on_hover_text(about("Pixels"));
                 ui.label(quiet(rays));
-                let state = if shown.is_last { "finished" } else { "refining" };
+                let state = if shown.is_last {
+                    "finished"
+                } else {
+                    "refining"
+                };
                 ui.label(quiet(state.to_owned()));
             }
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let backend = session.backend.clone().unwrap_or_else(|| "starting".to_owned());
-            ui.label(quiet(backend)).on_hover_text("What renders the picture");
+            let backend = session
+                .backend
+                .clone()
+                .unwrap_or_else(|| "starting".to_owned());
+            ui.label(quiet(backend))
+                .on_hover_text("What renders the picture");
         });
     });
 }

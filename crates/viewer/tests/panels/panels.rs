@@ -12,7 +12,10 @@ use zeroset_viewer::panel;
 use zeroset_viewer::pick::pick;
 use zeroset_viewer::session::Session;
 
-fn harness<'a>(session: Session, show: impl FnMut(&mut Ui, &mut Session) + 'a) -> Harness<'a, Session> {
+fn harness<'a>(
+    session: Session,
+    show: impl FnMut(&mut Ui, &mut Session) + 'a,
+) -> Harness<'a, Session> {
     Harness::builder()
         .with_size([340.0, 2400.0])
         .with_max_steps(12)
@@ -34,17 +37,41 @@ fn parameters_change_what_is_loaded() {
     assert_eq!(bite.accesskit_node().numeric_value(), Some(0.4));
     bite.set_value_accesskit(0.75);
     harness.run();
-    harness.get_by_role_and_label(Role::CheckBox, "floor").click();
+    harness
+        .get_by_role_and_label(Role::CheckBox, "floor")
+        .click();
     harness.run();
     take(&mut harness, "style", "sharp");
     let options = harness.state_mut().to_load().unwrap();
-    let set: Vec<_> = options.set.iter().map(|(k, v)| (k.as_str(), v.as_str())).collect();
-    assert_eq!(set, [("bite", "0.75"), ("floor", "false"), ("style", "sharp")]);
+    let set: Vec<_> = options
+        .set
+        .iter()
+        .map(|(k, v)| (k.as_str(), v.as_str()))
+        .collect();
+    assert_eq!(
+        set,
+        [("bite", "0.75"), ("floor", "false"), ("style", "sharp")]
+    );
     // what was set is a scene
     harness.state_mut().absorb(outcome(SCENE, &options));
-    assert_eq!(harness.state().current.as_ref().unwrap().scene.objects.len(), 1);
+    assert_eq!(
+        harness
+            .state()
+            .current
+            .as_ref()
+            .unwrap()
+            .scene
+            .objects
+            .len(),
+        1
+    );
     harness.run();
-    assert!(harness.query_by_role_and_label(Role::Button, "tint").is_some(), "the colour has a name");
+    assert!(
+        harness
+            .query_by_role_and_label(Role::ColorWell, "tint")
+            .is_some(),
+        "the colour has a name"
+    );
     harness.get_by_label("Reset all").click();
     harness.run();
     let all = harness.state().parameters().to_vec();
@@ -64,31 +91,60 @@ fn a_scene_without_parameters_says_how_to_make_one() {
 #[test]
 fn every_method_can_be_chosen() {
     let mut harness = harness(session(), |ui, session| panel::methods(ui, session));
-    for closed in ["Light and shadow", "Ambient occlusion", "Normals", "Antialiasing"] {
-        harness.get_by_role_and_label(Role::Button, closed).click();
+    for closed in [
+        "Light and shadow",
+        "Ambient occlusion",
+        "Normals",
+        "Antialiasing",
+    ] {
+        harness
+            .get_by_role_and_label(Role::DisclosureTriangle, closed)
+            .click();
         harness.run();
     }
     take(&mut harness, "March", "Over-relaxation");
-    assert!(harness.query_by_label_contains("Keinert et al. 2014, 3.1").is_some());
-    harness.get_by_role_and_label(Role::Slider, "Omega").set_value_accesskit(1.5);
+    assert!(
+        harness
+            .query_by_label_contains("Keinert et al. 2014, 3.1")
+            .is_some()
+    );
+    harness
+        .get_by_role_and_label(Role::Slider, "Omega")
+        .set_value_accesskit(1.5);
     harness.run();
     take(&mut harness, "Occlusion", "Obscurance");
-    harness.get_by_role_and_label(Role::Slider, "Tau").set_value_accesskit(4.0);
+    harness
+        .get_by_role_and_label(Role::Slider, "Tau")
+        .set_value_accesskit(4.0);
     harness.run();
     take(&mut harness, "Shadow", "Hard");
     take(&mut harness, "Normals", "26 samples");
     take(&mut harness, "Edges", "Supersampling");
     take(&mut harness, "Filter", "Tent");
-    harness.get_by_role_and_label(Role::CheckBox, "Cone prepass").click();
-    harness.get_by_role_and_label(Role::Slider, "Most steps").set_value_accesskit(99.0);
+    harness
+        .get_by_role_and_label(Role::CheckBox, "Cone prepass")
+        .click();
+    harness
+        .get_by_role_and_label(Role::Slider, "Most steps")
+        .set_value_accesskit(99.0);
     harness.run();
     let look = harness.state().looks[0];
     assert_eq!(look.settings.march, March::Relaxed { omega: 1.5 });
-    assert_eq!(look.settings.occlusion, Occlusion::Obscurance { rays: 64, reach: 1.5, tau: 4.0 });
+    assert_eq!(
+        look.settings.occlusion,
+        Occlusion::Obscurance {
+            rays: 64,
+            reach: 1.5,
+            tau: 4.0
+        }
+    );
     assert_eq!(look.shadow, Some(Shadow::Hard));
     assert_eq!(look.settings.normals, Normals::Samples26);
     let filter = Filter::Tent;
-    assert_eq!(look.settings.antialias, Antialias::Supersample { samples: 4, filter });
+    assert_eq!(
+        look.settings.antialias,
+        Antialias::Supersample { samples: 4, filter }
+    );
     assert!(!look.settings.prepass && look.settings.max_steps == 99);
     take(&mut harness, "Shadow", "As each light has it");
     assert_eq!(harness.state().looks[0].shadow, None);
@@ -102,7 +158,9 @@ fn views_are_chosen_by_name() {
     let mut harness = harness(session(), panel::view);
     take(&mut harness, "Show", "Steps");
     assert_eq!(harness.state().looks[0].plane, Plane::Steps);
-    harness.get_by_role_and_label(Role::Slider, "Exposure").set_value_accesskit(1.5);
+    harness
+        .get_by_role_and_label(Role::Slider, "Exposure")
+        .set_value_accesskit(1.5);
     harness.run();
     assert_eq!(harness.state().looks[0].settings.exposure, 1.5);
 }
@@ -113,7 +171,9 @@ fn comparisons_change_one_side_at_a_time() {
         panel::comparison(ui, session);
         panel::view(ui, session);
     });
-    harness.get_by_role_and_label(Role::CheckBox, "Show A and B").click();
+    harness
+        .get_by_role_and_label(Role::CheckBox, "Show A and B")
+        .click();
     harness.run();
     take(&mut harness, "Show", "Normals");
     let planes = |h: &Harness<'_, Session>| h.state().looks.map(|l| l.plane);
@@ -140,16 +200,23 @@ fn the_plane_can_be_moved_through_the_scene() {
     harness.run();
     harness.get_by_label("y").click();
     harness.run();
-    harness.get_by_role_and_label(Role::Slider, "Offset").set_value_accesskit(0.25);
+    harness
+        .get_by_role_and_label(Role::Slider, "Offset")
+        .set_value_accesskit(0.25);
     harness.run();
     let session = harness.state();
-    assert_eq!((session.is_sliced, session.slice.axis, session.slice.at), (true, 1, 0.25));
+    assert_eq!(
+        (session.is_sliced, session.slice.axis, session.slice.at),
+        (true, 1, 0.25)
+    );
     assert!(session.request([9, 9]).unwrap().slice.is_some());
 }
 
 #[test]
 fn the_camera_has_buttons_and_a_statement() {
-    let mut harness = harness(session(), |ui, session| panel::camera(ui, session, [320, 240]));
+    let mut harness = harness(session(), |ui, session| {
+        panel::camera(ui, session, [320, 240])
+    });
     let before = harness.state().rig;
     harness.get_by_label("Front").click();
     harness.run();
@@ -159,10 +226,15 @@ fn the_camera_has_buttons_and_a_statement() {
     assert!(harness.query_by_label_contains("camera(eye = (").is_some());
     harness.get_by_label("Copy as text").click();
     harness.step();
-    let copied = harness.output().platform_output.commands.iter().find_map(|c| match c {
-        eframe::egui::OutputCommand::CopyText(text) => Some(text.clone()),
-        _ => None,
-    });
+    let copied = harness
+        .output()
+        .platform_output
+        .commands
+        .iter()
+        .find_map(|c| match c {
+            eframe::egui::OutputCommand::CopyText(text) => Some(text.clone()),
+            _ => None,
+        });
     assert_eq!(copied, Some(harness.state().rig.statement()));
     harness.run();
     harness.get_by_label("As in the file").click();
@@ -180,7 +252,9 @@ fn the_timeline_plays_loops_and_scrubs() {
     assert!(harness.state().clock.is_playing);
     harness.get_by_label("Pause").click();
     harness.run();
-    harness.get_by_role_and_label(Role::Slider, "Time").set_value_accesskit(1.5);
+    harness
+        .get_by_role_and_label(Role::Slider, "Time")
+        .set_value_accesskit(1.5);
     harness.run();
     assert_eq!(harness.state_mut().to_load().unwrap().time, 1.5);
     harness.get_by_label("Next frame").click();
@@ -190,7 +264,9 @@ fn the_timeline_plays_loops_and_scrubs() {
     harness.run();
     assert!(!harness.state().clock.is_looping);
     for (name, value) in [("Length", 9.0), ("Frames a second", 24.0)] {
-        harness.get_by_role_and_label(Role::SpinButton, name).set_value_accesskit(value);
+        harness
+            .get_by_role_and_label(Role::SpinButton, name)
+            .set_value_accesskit(value);
         harness.run();
     }
     let clock = harness.state().clock;
@@ -199,14 +275,23 @@ fn the_timeline_plays_loops_and_scrubs() {
 
 #[test]
 fn the_status_says_what_the_picture_took() {
-    let harness = Harness::builder()
-        .with_size([1000.0, 40.0])
-        .build_ui_state(|ui, session: &mut Session| panel::status(ui, session), rendered(|_| {}));
-    for said in ["evaluations a ray", "160 x 120", "1 ray a pixel", "CPU, 2 threads", "finished"] {
+    let harness = Harness::builder().with_size([1000.0, 40.0]).build_ui_state(
+        |ui, session: &mut Session| panel::status(ui, session),
+        rendered(|_| {}),
+    );
+    for said in [
+        "evaluations a ray",
+        "160 x 120",
+        "1 ray a pixel",
+        "CPU, 2 threads",
+        "finished",
+    ] {
         assert!(harness.query_by_label_contains(said).is_some(), "{said}");
     }
-    let empty = Harness::builder()
-        .build_ui_state(|ui, session: &mut Session| panel::status(ui, session), session());
+    let empty = Harness::builder().build_ui_state(
+        |ui, session: &mut Session| panel::status(ui, session),
+        session(),
+    );
     assert!(empty.query_by_label_contains("no picture yet").is_some());
 }
 
@@ -215,7 +300,12 @@ fn a_click_says_what_is_there() {
     let mut session = rendered(|_| {});
     let shown = session.shown.as_ref().unwrap();
     let film = &shown.sides[0].film;
-    session.picked = pick(film, &shown.request.camera, &shown.request.scene, [0.42, 0.5]);
+    session.picked = pick(
+        film,
+        &shown.request.camera,
+        &shown.request.scene,
+        [0.42, 0.5],
+    );
     let mut harness = harness(session, |ui, session| {
         panel::picked(ui, session);
     });
@@ -235,9 +325,16 @@ fn mistakes_are_shown_as_the_terminal_shows_them() {
     let harness = Harness::builder()
         .with_size([800.0, 400.0])
         .with_max_steps(12)
-        .build_ui_state(|ui, session: &mut Session| panel::error(ui, session), session);
+        .build_ui_state(
+            |ui, session: &mut Session| panel::error(ui, session),
+            session,
+        );
     assert!(harness.query_by_label(report).is_some());
-    assert!(harness.query_by_label_contains("last good version").is_some());
+    assert!(
+        harness
+            .query_by_label_contains("last good version")
+            .is_some()
+    );
 }
 
 #[test]

@@ -47,7 +47,7 @@ pub(crate) fn rendered(prepare: impl FnOnce(&mut Session)) -> Session {
     loop {
         match engine.wait(Duration::from_secs(60)) {
             Some(Event::Ready(name)) => session.backend = Some(name),
-            Some(Event::Failed(reason)) => panic!("{reason}"),
+            Some(Event::Failed(reason) | Event::FellBack(reason)) => panic!("{reason}"),
             Some(Event::Shown(shown)) => {
                 let is_last = shown.is_last;
                 session.shown = Some(shown);

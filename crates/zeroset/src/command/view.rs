@@ -17,6 +17,5 @@ pub(crate) fn run(args: &View) -> Result<(), Failure> {
         backend: Box::new(move || Backend::cpu(threads)),
         explain: |failed| plain_report(failed.report.as_ref()),
     };
-    open(window)
-        .map_err(|error| Failure::with_help(Exit::Job, error.to_string(), error.advice()))
+    open(window).map_err(|error| Failure::with_help(Exit::Job, error.to_string(), error.advice()))
 }

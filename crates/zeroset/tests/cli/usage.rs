@@ -53,7 +53,11 @@ fn a_scene_without_a_command_is_viewed() {
     let folder = Folder::with(BALL);
     folder.bad("rende", 2, &["render"]);
     folder.bad("none.star", 4, &["none.star"]);
-    for arguments in ["scene.star", "--color never scene.star --time 2", "view scene.star"] {
+    for arguments in [
+        "scene.star",
+        "--color never scene.star --time 2",
+        "view scene.star",
+    ] {
         let mut command = folder.command(arguments);
         for screen in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
             command.env_remove(screen);
@@ -61,7 +65,10 @@ fn a_scene_without_a_command_is_viewed() {
         let output = command.output().unwrap();
         let said = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(1), "{arguments}: {said}");
-        assert!(said.contains("no screen") && said.contains("zeroset render"), "{said}");
+        assert!(
+            said.contains("no screen") && said.contains("zeroset render"),
+            "{said}"
+        );
     }
 }
 
