@@ -159,7 +159,13 @@ pub(crate) struct Render {
 pub(crate) struct View {
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// Threads that render. Default: all cores
+    /// What renders
+    #[arg(long, value_name = "WHAT", value_enum, default_value_t)]
+    pub backend: Backend,
+    /// The GPU whose name holds this text; `zeroset gpu` lists them
+    #[arg(long, value_name = "NAME")]
+    pub adapter: Option<String>,
+    /// Threads of the CPU. Default: all cores
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
 }

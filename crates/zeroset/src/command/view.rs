@@ -3,19 +3,48 @@
 use crate::args::View;
 use crate::console::plain_report;
 use crate::failure::{Exit, Failure};
-use zeroset_viewer::engine::Backend;
+use zeroset_viewer::engine::{Backend, MakeBackend};
 use zeroset_viewer::{Open, open};
 
 /// Opens the window, and returns when it is closed.
 pub(crate) fn run(args: &View) -> Result<(), Failure> {
     crate::scene::present(&args.scene)?;
     let options = crate::scene::options(&args.scene, None)?;
-    let threads = args.threads.map(usize::from);
     let window = Open {
         scene: args.scene.scene.clone(),
         options,
-        backend: Box::new(move || Backend::cpu(threads)),
+        backend: backend(args)?,
         explain: |failed| plain_report(failed.report.as_ref()),
     };
     open(window).map_err(|error| Failure::with_help(Exit::Job, error.to_string(), error.advice()))
+}
+
+/// What renders. A GPU that is asked for must be there before the window opens; one that may be there is looked for while
+/// it opens.
+#[cfg(feature = "gpu")]
+fn backend(args: &View) -> Result<MakeBackend, Failure> {
+    use crate::backend::{Backend as Asked, gpu};
+    let threads = args.threads.map(usize::from);
+    let on_gpu = |renderer: zeroset_gpu::GpuRenderer| Backend {
+        name: renderer.adapter().title(),
+        renderer: Box::new(renderer),
+    };
+    if args.backend == Asked::Auto && args.adapter.is_none() {
+        return Ok(Box::new(move || match gpu(Asked::Auto, None) {
+            Ok(Some(renderer)) => Ok(on_gpu(renderer)),
+            _ => Backend::cpu(threads),
+        }));
+    }
+    let renderer = gpu(args.backend, args.adapter.as_deref())?;
+    Ok(Box::new(move || match renderer {
+        Some(renderer) => Ok(on_gpu(renderer)),
+        None => Backend::cpu(threads),
+    }))
+}
+
+#[cfg(not(feature = "gpu"))]
+fn backend(args: &View) -> Result<MakeBackend, Failure> {
+    crate::backend::refused(args.backend, args.adapter.as_deref())?;
+    let threads = args.threads.map(usize::from);
+    Ok(Box::new(move || Backend::cpu(threads)))
 }
