@@ -125,7 +125,7 @@ pub(crate) fn needed(has: &Limits) -> Limits {
     Limits {
         max_bind_groups: 1,
         max_storage_buffers_per_shader_stage: STORAGE_BUFFERS,
-        max_dynamic_storage_buffers_per_pipeline_layout: 0,
+        max_dynamic_storage_buffers_per_pipeline_layout: 1,
         max_uniform_buffer_binding_size: 16 << 10,
         max_storage_buffer_binding_size: has.max_storage_buffer_binding_size,
         max_buffer_size: has.max_buffer_size,

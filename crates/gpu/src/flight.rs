@@ -81,7 +81,7 @@ pub(crate) struct Flight {
 
 impl Flight {
     pub(crate) fn new(gpu: &Arc<Gpu>) -> Result<Flight, GpuError> {
-        let usage = BufferUsages::UNIFORM | BufferUsages::COPY_DST;
+        let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
         Ok(Flight {
             tiles: gpu.buffer("tiles", STRIDE * TOGETHER as u64, usage)?,
             gpu: Arc::clone(gpu),

@@ -38,11 +38,10 @@ impl Memory {
         sizes: &Sizes,
     ) -> Result<(), GpuError> {
         let input = BufferUsages::STORAGE | BufferUsages::COPY_DST;
-        let uniform = BufferUsages::UNIFORM | BufferUsages::COPY_DST;
         for binding in Binding::ALL {
             let (bytes, usage) = match binding {
                 Binding::Tile => continue,
-                Binding::Frame => (size_of::<Frame>() as u64, uniform),
+                Binding::Frame => (size_of::<Frame>() as u64, input),
                 Binding::Params => (self.allowed(gpu, "the parameters", &job.params)?, input),
                 Binding::Code => (self.allowed(gpu, "the field", &job.code)?, input),
                 Binding::Table => (self.allowed(gpu, "the images", &job.table)?, input),

@@ -15,8 +15,11 @@ pub(crate) const LIMIT: f64 = 0.050;
 const SLOTS: usize = 32;
 /// Pixels of the first tile: a workgroup.
 const FIRST: u64 = (WORKGROUP * WORKGROUP) as u64;
-/// What a dispatch over unknown ground should take, seconds: should it turn out fifty times as dear, nobody notices.
-const FEELER: f64 = 0.001;
+/// What a dispatch over unknown ground should take, seconds, at first and after a surprise, and when there were none: should
+/// it turn out fifty, or twelve times as dear, nobody notices.
+const FEELER: [f64; 2] = [0.001, 0.004];
+/// How fast it goes from the one to the other.
+const COURAGE: f64 = 1.5;
 /// How much larger a tile over unknown ground is than those before it.
 const GROWTH: u64 = 4;
 /// How much more than the nearest known rows unknown ones may cost.
@@ -44,13 +47,31 @@ impl Area {
     }
 }
 
-/// What the pixels of a picture cost in one stage.
-#[derive(Clone, Debug, Default)]
+/// What the pixels of a picture cost in one stage: so much for a dispatch, and so much for each of its pixels.
+#[derive(Clone, Debug)]
 pub(crate) struct Costs {
     /// From the top of the picture to the bottom.
     slots: [Slot; SLOTS],
     /// Pixels of the largest tile that was measured.
     largest: u64,
+    /// Seconds of the shortest dispatch. Half of that is taken to be the same for all, which is never far too much.
+    shortest: f64,
+    /// Seconds a pixel of the last two tiles.
+    recent: Option<[f64; 2]>,
+    /// What a dispatch over unknown ground should take, seconds.
+    feeler: f64,
+}
+
+impl Default for Costs {
+    fn default() -> Costs {
+        Costs {
+            slots: Default::default(),
+            largest: 0,
+            shortest: f64::MAX,
+            recent: None,
+            feeler: FEELER[0],
+        }
+    }
 }
 
 /// Some rows of a picture.
@@ -69,27 +90,43 @@ impl Costs {
     }
 
     fn slots(rows: Range<u32>, height: u32) -> Range<usize> {
-        let slot = |row: u32| (row as usize * SLOTS / height.max(1) as usize).min(SLOTS - 1);
+        // every slot has a row
+        let (slots, height) = (SLOTS.min(height.max(1) as usize), height.max(1) as usize);
+        let slot = |row: u32| (row as usize * slots / height).min(slots - 1);
         slot(rows.start)..slot(rows.end.saturating_sub(1).max(rows.start)) + 1
     }
 
     /// Seconds a pixel of a slot, and whether that was measured there.
     fn rate(&self, slot: usize) -> Option<(f64, bool)> {
-        let Slot { rate, covered } = self.slots[slot];
-        if let Some(rate) = rate {
-            return Some((rate, covered > 0.5));
-        }
-        let near = |distance: usize| {
-            let (before, after) = (slot.checked_sub(distance), slot + distance);
-            let before = before.and_then(|k| self.slots[k].rate);
-            let after = self.slots.get(after).and_then(|s| s.rate);
-            before.into_iter().chain(after).reduce(f64::max)
+        let known = |k: usize| {
+            let Slot { rate, covered } = self.slots.get(k)?;
+            rate.filter(|_| *covered > 0.5)
         };
-        let rate = (1..SLOTS).find_map(near)?;
-        Some((CAUTION * rate, false))
+        if let Some(rate) = known(slot) {
+            return Some((rate, true));
+        }
+        let [last, before] = self.recent?;
+        let near = |distance: usize| {
+            let above = slot.checked_sub(distance).and_then(known);
+            above
+                .into_iter()
+                .chain(known(slot + distance))
+                .reduce(f64::max)
+        };
+        let near = (1..SLOTS).find_map(near).unwrap_or(0.0);
+        Some((CAUTION * last.max(before).max(near), false))
     }
 
-    /// What an area should cost, seconds, and whether all of it was measured before; `None` where nothing was.
+    /// What every dispatch takes, seconds.
+    fn fixed(&self) -> f64 {
+        if self.recent.is_some() {
+            0.5 * self.shortest
+        } else {
+            0.0
+        }
+    }
+
+    /// What the pixels of an area should cost, seconds, and whether all of it was measured before; `None` where nothing was.
     fn predict(&self, area: &Area, height: u32) -> Option<(f64, bool)> {
         let mut dearest = (0.0, true);
         for slot in Costs::slots(area.rows(), height) {
@@ -119,9 +156,16 @@ impl Costs {
             let rates = self.slots.iter_mut().filter_map(|s| s.rate.as_mut());
             rates.for_each(|rate| *rate *= dearer);
         }
-        let rate = seconds.max(1e-9) / area.pixels() as f64;
+        self.feeler = match predicted {
+            Some(predicted) if seconds <= predicted => (self.feeler * COURAGE).min(FEELER[1]),
+            _ => FEELER[0],
+        };
+        self.shortest = self.shortest.min(seconds);
+        let pixels = (seconds - 0.5 * self.shortest).max(1e-9);
+        let rate = pixels / area.pixels() as f64;
+        self.recent = Some([rate, self.recent.map_or(0.0, |r| r[0])]);
         let slots = Costs::slots(area.rows(), height);
-        let whole = f64::from(width) * f64::from(height) / SLOTS as f64;
+        let whole = f64::from(width) * f64::from(height) / f64::from(height.min(SLOTS as u32));
         let share = area.pixels() as f64 / (whole * slots.len() as f64).max(1.0);
         for slot in &mut self.slots[slots] {
             // a small part of some rows says little about the rest of them, unless it is dear
@@ -212,7 +256,7 @@ impl Cutter {
         let predicted = costs.predict(&area, self.height);
         Tile {
             area,
-            predicted: predicted.map(|(seconds, _)| seconds),
+            predicted: predicted.map(|(seconds, _)| costs.fixed() + seconds),
             is_guess: predicted.is_none_or(|(_, measured)| !measured),
         }
     }
@@ -225,8 +269,10 @@ impl Cutter {
         let pixels = area.pixels();
         match costs.predict(area, self.height) {
             None => pixels <= FIRST,
-            Some((seconds, true)) => seconds <= TARGET,
-            Some((seconds, false)) => seconds <= FEELER && pixels <= GROWTH * costs.largest,
+            Some((seconds, true)) => costs.fixed() + seconds <= TARGET,
+            Some((seconds, false)) => {
+                seconds <= costs.feeler.max(costs.fixed()) && pixels <= GROWTH * costs.largest
+            }
         }
     }
 
@@ -289,7 +335,12 @@ mod tests {
     use super::*;
 
     /// Dispatches a whole area on a device where pixels cost what `cost` says, and returns how long each tile took.
-    fn run(costs: &mut Costs, size: [u32; 2], cost: impl Fn(u32, u32) -> f64) -> Vec<(Tile, f64)> {
+    fn run(
+        costs: &mut Costs,
+        size: [u32; 2],
+        fixed: f64,
+        cost: impl Fn(u32, u32) -> f64,
+    ) -> Vec<(Tile, f64)> {
         let area = Area {
             corner: [0, 0],
             size,
@@ -299,7 +350,7 @@ mod tests {
         let mut tiles = Vec::new();
         while let Some(tile) = cutter.next(costs) {
             let ([x0, y0], [w, h]) = (tile.area.corner, tile.area.size);
-            let mut seconds = 1e-5;
+            let mut seconds = fixed;
             for y in y0..y0 + h {
                 for x in x0..x0 + w {
                     let seen = &mut seen[(y * size[0] + x) as usize];
@@ -322,7 +373,14 @@ mod tests {
     #[test]
     fn tiles_stay_short_whatever_the_picture_costs() {
         for size in [[1, 1], [9, 17], [640, 360], [512, 512], [1999, 30]] {
-            for price in [1e-9, 1e-7, 1e-6, 1e-4] {
+            for (price, fixed) in [
+                (1e-9, 1e-5),
+                (1e-7, 1e-5),
+                (1e-6, 1e-5),
+                (1e-6, 2e-3),
+                (1e-7, 8e-3),
+                (1e-4, 1e-5),
+            ] {
                 // a sky that costs a fiftieth of the thing in its middle
                 let cost = |x: u32, y: u32| {
                     let dx = x as f64 / size[0] as f64 - 0.5;
@@ -331,12 +389,15 @@ mod tests {
                 };
                 let mut costs = Costs::default();
                 // a workgroup at least
-                let most = LIMIT.max(64.0 * price + 1e-4);
+                let most = LIMIT.max(64.0 * price + 1e-4) + fixed;
                 for pass in 0..3 {
-                    let tiles = run(&mut costs, size, cost);
+                    let tiles = run(&mut costs, size, fixed, cost);
                     let longest = longest(&tiles);
                     assert!(longest <= most, "{size:?}, {price}, {pass}: {longest}");
-                    if pass == 2 && price * f64::from(size[0] * size[1]) < 0.01 {
+                    let work: f64 = tiles.iter().map(|t| t.1 - fixed).sum();
+                    let count = tiles.len() as f64;
+                    assert!(count <= 30.0 + 4.0 * work / FEELER[0], "{count}, {work}");
+                    if pass == 2 && fixed < 1e-4 && price * f64::from(size[0] * size[1]) < 0.01 {
                         assert!(tiles.len() == 1, "{size:?}, {price}: {}", tiles.len());
                     }
                 }
@@ -347,11 +408,11 @@ mod tests {
     #[test]
     fn a_picture_that_becomes_dearer_costs_a_few_long_tiles_at_most() {
         let mut costs = Costs::default();
-        run(&mut costs, [512, 512], |_, _| 1e-8);
-        let tiles = run(&mut costs, [512, 512], |_, _| 5e-6);
+        run(&mut costs, [512, 512], 1e-5, |_, _| 1e-8);
+        let tiles = run(&mut costs, [512, 512], 1e-5, |_, _| 5e-6);
         let long = tiles.iter().filter(|(_, seconds)| *seconds > LIMIT);
         assert!(long.count() <= 3);
-        let tiles = run(&mut costs, [512, 512], |_, _| 5e-6);
+        let tiles = run(&mut costs, [512, 512], 1e-5, |_, _| 5e-6);
         assert!(longest(&tiles) <= LIMIT);
     }
 

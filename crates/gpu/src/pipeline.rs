@@ -61,8 +61,8 @@ impl Layouts {
 fn layout(binding: Binding) -> BindGroupLayoutEntry {
     let storage = |read_only| BufferBindingType::Storage { read_only };
     let (ty, size) = match binding {
-        Binding::Frame => (BufferBindingType::Uniform, size_of::<Frame>()),
-        Binding::Tile => (BufferBindingType::Uniform, size_of::<Tile>()),
+        Binding::Frame => (storage(true), size_of::<Frame>()),
+        Binding::Tile => (storage(true), size_of::<Tile>()),
         Binding::Params | Binding::Code | Binding::Table => (storage(true), 0),
         _ => (storage(false), 0),
     };

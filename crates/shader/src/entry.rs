@@ -14,9 +14,10 @@ pub const COUNTERS: u32 = 16;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum Binding {
-    /// [`crate::layout::Frame`], uniform.
+    /// [`crate::layout::Frame`], read only. Not a uniform: lavapipe compiles a shader anew for the values of uniforms that
+    /// it branches on, at every dispatch.
     Frame = 0,
-    /// [`crate::layout::Tile`], uniform with a dynamic offset.
+    /// [`crate::layout::Tile`], read only, with a dynamic offset.
     Tile = 1,
     /// Parameters of the field: `array<f32>`, read only.
     Params = 2,
@@ -57,8 +58,8 @@ impl Binding {
     /// Its declaration in WGSL.
     pub(crate) fn declaration(self) -> String {
         let (space, name, kind) = match self {
-            Binding::Frame => ("uniform", "frame", "Frame"),
-            Binding::Tile => ("uniform", "tile", "Tile"),
+            Binding::Frame => ("storage, read", "frame", "Frame"),
+            Binding::Tile => ("storage, read", "tile", "Tile"),
             Binding::Params => ("storage, read", "params", "array<f32>"),
             Binding::Code => ("storage, read", "code", "array<u32>"),
             Binding::Table => ("storage, read", "table", "array<vec4f>"),

@@ -1,6 +1,6 @@
 // Stands in for a scene's shader: every pixel's colour is where it is and the mean number of its rays.
-@group(0) @binding(0) var<uniform> frame: Frame;
-@group(0) @binding(1) var<uniform> tile: Tile;
+@group(0) @binding(0) var<storage, read> frame: Frame;
+@group(0) @binding(1) var<storage, read> tile: Tile;
 @group(0) @binding(2) var<storage, read> params: array<f32>;
 @group(0) @binding(3) var<storage, read> code: array<u32>;
 @group(0) @binding(4) var<storage, read> table: array<vec4f>;
