@@ -32,10 +32,18 @@ pub struct App {
     stage: Stage,
     is_panel_open: bool,
     is_help_open: bool,
-    /// The name that a picture is to be saved under, while that is asked for.
-    saving: Option<String>,
+    /// What is asked about a picture that is to be saved.
+    saving: Option<Saving>,
     /// What was done, and when it was said.
     note: Option<(String, Instant)>,
+}
+
+/// A picture that is to be saved.
+struct Saving {
+    /// The name of the file.
+    name: String,
+    /// Whether it is saved as soon as the picture is finished.
+    is_waiting: bool,
 }
 
 impl App {
@@ -207,7 +215,7 @@ impl App {
                     .on_hover_text("Saves the picture (Ctrl+S).")
                     .clicked()
                 {
-                    self.saving = Some(save::default_name(&self.session));
+                    self.ask_for_name();
                 }
                 let mut on = self.session.comparison.is_on;
                 ui.toggle_value(&mut self.session.is_sliced, "Slice")
@@ -274,7 +282,7 @@ impl App {
             self.tell("The camera is on the clipboard.");
         }
         if pressed(Modifiers::COMMAND, Key::S) {
-            self.saving = Some(save::default_name(&self.session));
+            self.ask_for_name();
         }
         if self.saving.is_some() || ctx.text_edit_focused() {
             return;
@@ -332,29 +340,50 @@ impl App {
         }
     }
 
+    /// Asks what the picture is to be called. The time stands still meanwhile.
+    fn ask_for_name(&mut self) {
+        self.session.clock.is_playing = false;
+        self.saving = Some(Saving {
+            name: save::default_name(&self.session),
+            is_waiting: false,
+        });
+    }
+
     fn save_dialog(&mut self, ctx: &Context) {
-        let Some(name) = &mut self.saving else {
+        let Some(saving) = &mut self.saving else {
             return;
         };
+        let is_finished = self.session.is_finished();
         let (mut is_done, mut is_left) = (false, false);
-        let modal = Modal::new(Id::unique("save")).show(ctx, |ui| {
+        let frame = Frame::popup(&ctx.global_style()).inner_margin(Margin::same(18));
+        let modal = Modal::new(Id::unique("save")).frame(frame).show(ctx, |ui| {
             ui.set_width(420.0);
             ui.heading("Save the picture");
-            ui.weak("As it is shown now. The ending says how: .png, or .exr with all planes.");
-            ui.add_space(4.0);
-            let edit = TextEdit::singleline(name).desired_width(f32::INFINITY);
-            let edit = ui.add(edit).accessible_name("File name");
-            if edit.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter)) {
-                is_done = true;
-            }
+            ui.weak("The ending says how: .png, or .exr with all planes of the film.");
             ui.add_space(6.0);
+            let edit = TextEdit::singleline(&mut saving.name).desired_width(f32::INFINITY);
+            let edit = ui.add(edit).accessible_name("File name");
+            let entered = edit.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
+            ui.add_space(8.0);
             ui.horizontal(|ui| {
-                is_done |= ui.add(Button::new("Save")).clicked();
-                is_left |= ui.button("Cancel").clicked();
+                let word = if is_finished {
+                    "Save"
+                } else {
+                    "Save when finished"
+                };
+                let save = ui.add_enabled(!saving.is_waiting, Button::new(word));
+                saving.is_waiting |= save.clicked() || entered;
+                if !is_finished {
+                    is_done = ui.button("Save as it is").clicked();
+                }
+                is_left = ui.button("Cancel").clicked();
             });
+            if saving.is_waiting && !is_finished {
+                ui.weak("The picture is still being refined.");
+            }
         });
-        if is_done {
-            let said = match save::save(&self.session, name) {
+        if is_done || (saving.is_waiting && is_finished) {
+            let said = match save::save(&self.session, &saving.name) {
                 Ok(path) => format!("Saved {}", path.display()),
                 Err(reason) => format!("Not saved: {reason}"),
             };

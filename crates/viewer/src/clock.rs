@@ -83,7 +83,7 @@ impl Clock {
 
     /// Lets seconds pass.
     pub fn advance(&mut self, seconds: f64) {
-        if !self.is_playing || !(seconds > 0.0 && seconds.is_finite()) {
+        if !(self.is_playing && seconds > 0.0 && seconds.is_finite()) {
             return;
         }
         self.at += seconds;

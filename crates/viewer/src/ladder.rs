@@ -90,10 +90,10 @@ fn coarse([width, height]: [u32; 2], rate: f64, sides: usize) -> [u32; 2] {
 
 /// The rate after another measurement: a moving mean, so that one slow picture does not make all others coarse.
 pub fn measured(before: Option<f64>, rays: u64, seconds: f64) -> Option<f64> {
-    if rays == 0 || !(seconds > 0.0) {
+    let now = rays as f64 / seconds;
+    if !(now > 0.0 && now.is_finite()) {
         return before;
     }
-    let now = rays as f64 / seconds;
     Some(before.map_or(now, |before| 0.6 * before + 0.4 * now))
 }
 

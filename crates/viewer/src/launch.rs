@@ -72,9 +72,27 @@ pub fn open(open: Open) -> Result<(), OpenError> {
         Ok(Box::new(app) as Box<dyn eframe::App>)
     });
     eframe::run_native("zeroset", options, make).map_err(|error| match error {
-        eframe::Error::Winit(error) => OpenError::Screen(error.to_string()),
-        eframe::Error::WinitEventLoop(error) => OpenError::Screen(error.to_string()),
+        eframe::Error::Winit(error) => OpenError::Screen(plain(&error.to_string())),
+        eframe::Error::WinitEventLoop(error) => OpenError::Screen(plain(&error.to_string())),
         eframe::Error::Wgpu(error) => OpenError::Device(error.to_string()),
         other => OpenError::Other(other.to_string()),
     })
+}
+
+/// What the system said, without the line of winit that passes it on.
+fn plain(said: &str) -> String {
+    let rest = said
+        .strip_prefix("os error at ")
+        .and_then(|s| s.split_once(": "));
+    rest.map_or(said, |(_, rest)| rest).to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn messages_name_no_source_file() {
+        let said = "os error at /somewhere/mod.rs:765: neither DISPLAY nor: this";
+        assert_eq!(super::plain(said), "neither DISPLAY nor: this");
+        assert_eq!(super::plain("no: this"), "no: this");
+    }
 }

@@ -38,7 +38,9 @@ impl Picked {
 /// The pixel of a film at a place on the picture, as shares of its width and height.
 fn pixel(film: &Film, [x, y]: [f32; 2]) -> Option<usize> {
     let inside = |share: f32, n: u32| {
-        (share >= 0.0 && share < 1.0).then(|| ((share * n as f32) as u32).min(n.saturating_sub(1)))
+        (0.0..1.0)
+            .contains(&share)
+            .then(|| ((share * n as f32) as u32).min(n.saturating_sub(1)))
     };
     let (x, y) = (inside(x, film.width())?, inside(y, film.height())?);
     Some(y as usize * film.width() as usize + x as usize)

@@ -244,6 +244,12 @@ impl Session {
         })
     }
 
+    /// Whether the picture that is shown is the one that is wanted, as refined as it will be.
+    pub fn is_finished(&self) -> bool {
+        let shown = self.shown.as_ref();
+        shown.is_some_and(|s| s.is_last && self.wanted.as_ref() == Some(&*s.request))
+    }
+
     /// The picture to ask the engine for, if it is another one than last time.
     pub fn to_render(&mut self, size: [u32; 2]) -> Option<Request> {
         let request = self.request(size)?;

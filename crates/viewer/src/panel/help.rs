@@ -42,23 +42,27 @@ pub fn help(ctx: &Context, is_open: &mut bool) {
         .open(is_open)
         .collapsible(false)
         .resizable(false)
+        .vscroll(false)
         .anchor(eframe::egui::Align2::CENTER_CENTER, [0.0, 0.0])
         .show(ctx, |ui| {
-            ScrollArea::vertical().max_height(560.0).show(ui, |ui| {
-                Grid::new("keys")
-                    .num_columns(2)
-                    .spacing([28.0, 6.0])
-                    .show(ui, |ui| {
-                        for (key, what) in KEYS {
-                            if what.is_empty() {
-                                ui.label(RichText::new(*key).small().weak());
-                            } else {
-                                ui.label(RichText::new(*key).strong());
-                                ui.label(*what);
+            ScrollArea::vertical()
+                .max_height(620.0)
+                .min_scrolled_height(560.0)
+                .show(ui, |ui| {
+                    Grid::new("keys")
+                        .num_columns(2)
+                        .spacing([28.0, 6.0])
+                        .show(ui, |ui| {
+                            for (key, what) in KEYS {
+                                if what.is_empty() {
+                                    ui.label(RichText::new(*key).small().weak());
+                                } else {
+                                    ui.label(RichText::new(*key).strong());
+                                    ui.label(*what);
+                                }
+                                ui.end_row();
                             }
-                            ui.end_row();
-                        }
-                    });
-            });
+                        });
+                });
         });
 }

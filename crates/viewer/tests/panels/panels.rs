@@ -90,7 +90,7 @@ fn a_scene_without_parameters_says_how_to_make_one() {
 
 #[test]
 fn every_method_can_be_chosen() {
-    let mut harness = harness(session(), |ui, session| panel::methods(ui, session));
+    let mut harness = harness(session(), panel::methods);
     for closed in [
         "Light and shadow",
         "Ambient occlusion",
