@@ -249,6 +249,10 @@ impl App {
             section(ui, "View", true, |ui| panel::view(ui, session));
             panel::methods(ui, session);
             ui.separator();
+            let log = session.current.as_ref().map_or(&[][..], |c| &c.loaded.log);
+            if !log.is_empty() {
+                section(ui, "Printed by the scene", true, |ui| panel::log(ui, log));
+            }
             section(ui, "Camera", false, |ui| panel::camera(ui, session, size));
         });
     }

@@ -103,12 +103,10 @@ impl PartialEq for Request {
 }
 
 impl Request {
-    fn has_rays_of(&self, other: &Request) -> bool {
-        let looks = self.looks.iter().zip(&other.looks);
+    /// Whether both look at the same from the same place.
+    fn sees_as(&self, other: &Request) -> bool {
         Arc::ptr_eq(&self.scene, &other.scene)
             && (self.camera, self.size) == (other.camera, other.size)
-            && self.looks.len() == other.looks.len()
-            && looks.into_iter().all(|(a, b)| a.has_rays_of(b))
     }
 
     /// The scene as a look shows it.
@@ -138,6 +136,14 @@ pub struct Exposed {
     pub image: Arc<ColorImage>,
     /// What its colours mean, where they are numbers.
     pub key: Option<Key>,
+    /// Which picture of the ladder it is.
+    pub rung: Rung,
+    /// Seconds that its rays took.
+    pub seconds: f64,
+    /// Primary rays.
+    pub rays: u64,
+    /// Evaluations of the field.
+    pub evaluations: Evaluations,
 }
 
 /// A picture of the ladder that is done.
@@ -145,16 +151,8 @@ pub struct Exposed {
 pub struct Shown {
     /// What it shows.
     pub request: Arc<Request>,
-    /// Which picture of the ladder it is.
-    pub rung: Rung,
     /// One for each look.
     pub sides: Vec<Exposed>,
-    /// Seconds that the rays took, for all looks.
-    pub seconds: f64,
-    /// Primary rays of all looks.
-    pub rays: u64,
-    /// Evaluations of the field, of all looks.
-    pub evaluations: Evaluations,
     /// Whether it is the last one.
     pub is_last: bool,
 }
@@ -276,14 +274,55 @@ impl Observer for Impatient<'_> {
     }
 }
 
-/// The rays of a picture that is done.
-struct Done {
-    request: Arc<Request>,
-    films: Vec<Arc<Film>>,
+/// A look's film, and what it took.
+#[derive(Clone)]
+struct Take {
+    look: Look,
     rung: Rung,
+    film: Arc<Film>,
     seconds: f64,
     rays: u64,
     evaluations: Evaluations,
+}
+
+impl Take {
+    /// Whether it is as good as a picture of the ladder would be.
+    fn serves(&self, look: &Look, rung: &Rung, full: [u32; 2]) -> bool {
+        let own = own_rung(look, rung);
+        self.look.has_rays_of(look)
+            && self.rung.size == full
+            && self.rung.samples() >= own.samples()
+    }
+}
+
+/// The best films of what was seen last, so that no ray is taken twice.
+#[derive(Default)]
+struct Kept {
+    seen: Option<Arc<Request>>,
+    films: Vec<Take>,
+}
+
+impl Kept {
+    /// Keeps what a request can use, and nothing else.
+    fn turn_to(&mut self, request: &Arc<Request>) {
+        if self.seen.as_ref().is_none_or(|seen| !seen.sees_as(request)) {
+            self.films.clear();
+        }
+        let is_asked = |take: &Take| request.looks.iter().any(|l| l.has_rays_of(&take.look));
+        self.films.retain(is_asked);
+        self.seen = Some(Arc::clone(request));
+    }
+
+    fn find(&self, look: &Look, rung: &Rung, full: [u32; 2]) -> Option<&Take> {
+        self.films.iter().find(|r| r.serves(look, rung, full))
+    }
+
+    fn keep(&mut self, take: &Take, full: [u32; 2]) {
+        if take.rung.size == full {
+            self.films.retain(|r| !r.look.has_rays_of(&take.look));
+            self.films.push(take.clone());
+        }
+    }
 }
 
 /// The thread's side.
@@ -293,7 +332,7 @@ struct Worker<'a> {
     tell: &'a Sender<Event>,
     wake: &'a (dyn Fn() + Send + Sync),
     rate: Option<f64>,
-    done: Option<Done>,
+    kept: Kept,
     cut: Cut,
 }
 
@@ -318,7 +357,7 @@ impl Worker<'_> {
             tell,
             wake,
             rate: None,
-            done: None,
+            kept: Kept::default(),
             cut: Cut::default(),
             backend,
         };
@@ -365,7 +404,7 @@ impl Worker<'_> {
     /// Goes on with the CPU when the device that rendered is no more.
     fn fall_back(&mut self, reason: String) -> Result<(), RenderError> {
         self.backend = Backend::cpu(None)?;
-        (self.rate, self.done) = (None, None);
+        (self.rate, self.kept) = (None, Kept::default());
         self.say(Event::Ready(self.backend.name.clone()));
         self.say(Event::FellBack(reason));
         Ok(())
@@ -390,17 +429,17 @@ impl Worker<'_> {
         let mut rungs = longest
             .max_by_key(Vec::len)
             .unwrap_or_else(|| ladder(first, self.rate));
-        if let Some(done) = self.done.take_if(|d| d.request.has_rays_of(&request)) {
-            // the rays are there; they are only shown in another way
-            let later = |r: &Rung| r.samples() > done.rung.samples() || r.size != done.rung.size;
-            rungs.retain(|r| r.size == request.size && later(r));
-            let done = Done {
-                request: Arc::clone(&request),
-                ..done
-            };
-            self.show(&done, rungs.is_empty());
-            self.done = Some(done);
-        }
+        self.kept.turn_to(&request);
+        let (full, kept) = (request.size, &self.kept);
+        let is_there = |rung: &Rung| {
+            request
+                .looks
+                .iter()
+                .all(|l| kept.find(l, rung, full).is_some())
+        };
+        // of what is there already, only the best is shown
+        let first = rungs.iter().rposition(is_there).unwrap_or(0);
+        rungs.drain(..first);
         let count = rungs.len();
         for (i, rung) in (1..).zip(rungs) {
             // the first picture is always finished: otherwise a camera that moves would show none
@@ -409,53 +448,56 @@ impl Worker<'_> {
                 shared: self.shared,
                 number,
             };
-            let done = self.render(&request, &rung, &observer)?;
-            self.show(&done, i == count);
-            self.done = Some(done);
+            let films = self.render(&request, &rung, &observer)?;
+            self.show(&request, &films, i == count);
         }
         Ok(())
     }
 
+    /// A film for each look: one that is there, or a new one.
     fn render(
         &mut self,
-        request: &Arc<Request>,
+        request: &Request,
         rung: &Rung,
         observer: &dyn Observer,
-    ) -> Result<Done, RenderError> {
-        let began = Instant::now();
-        let (mut rays, mut evaluations) = (0, Evaluations::default());
+    ) -> Result<Vec<Take>, RenderError> {
         let mut films = Vec::with_capacity(request.looks.len());
         for look in &request.looks {
-            let scene = request.scene_of(look, &own_rung(look, rung));
+            if let Some(take) = self.kept.find(look, rung, request.size) {
+                films.push(take.clone());
+                continue;
+            }
+            let own = own_rung(look, rung);
+            let scene = request.scene_of(look, &own);
+            let began = Instant::now();
             let frame = self.backend.renderer.render(&scene, observer)?;
-            rays += frame.statistics.rays;
-            evaluations = evaluations.plus(&frame.statistics.evaluations);
-            films.push(Arc::new(frame.film));
+            let take = Take {
+                look: *look,
+                rung: own,
+                film: Arc::new(frame.film),
+                seconds: began.elapsed().as_secs_f64(),
+                rays: frame.statistics.rays,
+                evaluations: frame.statistics.evaluations,
+            };
+            if own.samples() == 1 {
+                self.rate = ladder::measured(self.rate, take.rays, take.seconds);
+            }
+            self.kept.keep(&take, request.size);
+            films.push(take);
         }
-        let seconds = began.elapsed().as_secs_f64();
-        if rung.samples() == 1 {
-            self.rate = ladder::measured(self.rate, rays, seconds);
-        }
-        Ok(Done {
-            request: Arc::clone(request),
-            films,
-            rung: *rung,
-            seconds,
-            rays,
-            evaluations,
-        })
+        Ok(films)
     }
 
-    fn show(&mut self, done: &Done, is_last: bool) {
-        let request = &done.request;
-        let mut sides = Vec::with_capacity(done.films.len());
-        for (look, film) in request.looks.iter().zip(&done.films) {
+    fn show(&mut self, request: &Arc<Request>, films: &[Take], is_last: bool) {
+        let mut sides = Vec::with_capacity(films.len());
+        for (look, take) in request.looks.iter().zip(films) {
             let view = View {
                 plane: look.plane,
                 exposure: look.settings.exposure,
                 legend: false,
                 objects: &[],
             };
+            let film = &take.film;
             let mut image = develop(film, &view);
             let slice = request.slice.as_ref();
             let distances = slice.and_then(|s| self.cut.paint(s, request, film, &mut image));
@@ -464,16 +506,16 @@ impl Worker<'_> {
             sides.push(Exposed {
                 film: Arc::clone(film),
                 image: Arc::new(image),
+                rung: take.rung,
+                seconds: take.seconds,
+                rays: take.rays,
+                evaluations: take.evaluations,
                 key,
             });
         }
         self.say(Event::Shown(Box::new(Shown {
             request: Arc::clone(request),
-            rung: done.rung,
             sides,
-            seconds: done.seconds,
-            rays: done.rays,
-            evaluations: done.evaluations,
             is_last,
         })));
     }

@@ -105,17 +105,18 @@ fn pictures_come_from_coarse_to_refined() {
     let mut samples = Vec::new();
     loop {
         let shown = picture(&engine);
-        let size = shown.rung.size;
+        let size = shown.sides[0].rung.size;
         assert!(
             size == [400, 300] || (samples.is_empty() && size[0] < 400),
             "{size:?}"
         );
         let [width, height] = size.map(|n| n as usize);
         assert_eq!(shown.sides[0].image.size, [width, height]);
-        assert!(shown.evaluations.total() > shown.rays / 4 && shown.seconds > 0.0);
+        let side = &shown.sides[0];
+        assert!(side.evaluations.total() > side.rays / 4 && side.seconds > 0.0);
         let middle = shown.sides[0].image.pixels[height / 2 * width + width / 2];
         assert!(middle.r() > 40, "the ball is not there: {middle:?}");
-        samples.push(shown.rung.samples());
+        samples.push(shown.sides[0].rung.samples());
         if shown.is_last {
             break;
         }
@@ -128,18 +129,21 @@ fn the_newest_request_ends_the_others() {
     let renderer = Counting::default();
     let engine = started(renderer.clone());
     engine.ask(request(BALL, [8, 8]));
-    assert_eq!(picture(&engine).rung.samples(), 1);
+    assert_eq!(picture(&engine).sides[0].rung.samples(), 1);
     while renderer.calls.load(Ordering::SeqCst) < 2 {
         std::thread::yield_now();
     }
     // the refined picture is waiting now
     engine.ask(request(BALL, [16, 16]));
     let next = picture(&engine);
-    assert_eq!((next.rung.size, next.rung.samples()), ([16, 16], 1));
+    assert_eq!(
+        (next.sides[0].rung.size, next.sides[0].rung.samples()),
+        ([16, 16], 1)
+    );
     assert_eq!(renderer.cancelled.load(Ordering::SeqCst), 1);
     renderer.may_finish.store(true, Ordering::SeqCst);
     let refined = picture(&engine);
-    assert!(refined.is_last && refined.rung.samples() == 4);
+    assert!(refined.is_last && refined.sides[0].rung.samples() == 4);
 }
 
 /// A camera that never rests shows pictures all the same.
@@ -148,7 +152,7 @@ fn the_first_picture_of_a_request_is_always_finished() {
     let engine = started(Counting::default());
     for width in 1..=20 {
         engine.ask(request(BALL, [width, 4]));
-        assert_eq!(picture(&engine).rung.size, [width, 4]);
+        assert_eq!(picture(&engine).sides[0].rung.size, [width, 4]);
     }
 }
 
@@ -172,12 +176,12 @@ fn what_is_only_shown_differently_takes_no_rays() {
     // one that goes on from there takes only what is missing
     other.refine = true;
     engine.ask(other.clone());
-    assert_eq!(last(&engine).rung.samples(), 64);
+    assert_eq!(last(&engine).sides[0].rung.samples(), 64);
     assert_eq!(renderer.calls.load(Ordering::SeqCst), calls + 2);
     // and another method takes all
     other.looks[0].settings.march = March::Sphere;
     engine.ask(other);
-    assert_eq!(last(&engine).rung.samples(), 64);
+    assert_eq!(last(&engine).sides[0].rung.samples(), 64);
     assert_eq!(renderer.calls.load(Ordering::SeqCst), calls + 2 + 4);
 }
 
@@ -196,10 +200,46 @@ fn two_looks_are_two_pictures() {
     assert!(shown.sides[0].image.pixels != shown.sides[1].image.pixels);
     let filter = Filter::Box;
     assert_eq!(
-        shown.rung.antialias,
+        shown.sides[0].rung.antialias,
         Antialias::Supersample { samples: 4, filter }
     );
-    assert_eq!(own_rung(&other, &shown.rung).antialias, Antialias::None);
+    assert_eq!(shown.sides[1].rung.antialias, Antialias::None);
+}
+
+/// Of two looks, only the one that changed is rendered again.
+#[test]
+fn a_look_that_stays_keeps_its_picture() {
+    let renderer = Counting::default();
+    renderer.may_finish.store(true, Ordering::SeqCst);
+    let engine = started(renderer.clone());
+    let mut wanted = request(BALL, [8, 8]);
+    engine.ask(wanted.clone());
+    let alone = last(&engine);
+    let calls = || renderer.calls.swap(0, Ordering::SeqCst);
+    assert_eq!(calls(), 2);
+    // another look that is the same is there already
+    wanted.looks.push(wanted.looks[0]);
+    engine.ask(wanted.clone());
+    let both = picture(&engine);
+    assert!(both.is_last && calls() == 0);
+    wanted.looks[1].settings.march = March::Sphere;
+    engine.ask(wanted.clone());
+    let first = picture(&engine);
+    assert_eq!(
+        first.sides[0].rung.samples(),
+        4,
+        "the first look became coarse"
+    );
+    assert_eq!(first.sides[1].rung.samples(), 1);
+    let refined = last(&engine);
+    assert!(Arc::ptr_eq(&alone.sides[0].film, &refined.sides[0].film));
+    assert_eq!((calls(), refined.sides[1].rung.samples()), (2, 4));
+    // a camera that moved sees both anew
+    wanted.camera.eye.x += 0.1;
+    engine.ask(wanted);
+    assert_eq!(picture(&engine).sides[0].rung.samples(), 1);
+    last(&engine);
+    assert_eq!(calls(), 4);
 }
 
 #[test]
@@ -236,7 +276,7 @@ fn the_cpu_goes_on_where_a_device_fails() {
     assert!(
         matches!(engine.wait(PATIENCE), Some(Event::FellBack(reason)) if reason.contains("pulled"))
     );
-    assert_eq!(last(&engine).rung.samples(), 4);
+    assert_eq!(last(&engine).sides[0].rung.samples(), 4);
 }
 
 #[test]

@@ -208,3 +208,71 @@ fn blend(under: Color32, over: Color32, share: f32) -> Color32 {
     let ([r, g, b, _], [s, h, c, _]) = (under.to_array(), over.to_array());
     Color32::from_rgb(mix(r, s), mix(g, h), mix(b, c))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::Look;
+    use zeroset_scene::load::{Language, Options, load_text};
+    use zeroset_scene::render::{Renderer, Silent};
+    use zeroset_trace::CpuRenderer;
+
+    /// A ball seen along z, cut through its middle by the plane across z.
+    fn cut(at: f64) -> (ColorImage, ColorImage, Option<f32>) {
+        let text = "show(sphere(0.5))\ncamera(eye = (0, 0, 4), target = (0, 0, 0), lens = orthographic(2))\n\
+                    render(size = (200, 200), aa = none())\nsky(color = \"#00ff00\")\n";
+        let loaded = load_text(
+            "cut.star",
+            text,
+            Language::Starlark,
+            None,
+            &Options::default(),
+        );
+        let scene = Arc::new(loaded.unwrap().scene);
+        let look = Look {
+            settings: scene.settings,
+            shadow: None,
+            plane: Plane::Colour,
+        };
+        let film = CpuRenderer::new(Some(1))
+            .unwrap()
+            .render(&scene, &Silent)
+            .unwrap()
+            .film;
+        let request = Request {
+            camera: scene.camera,
+            size: [200, 200],
+            looks: vec![look],
+            refine: false,
+            slice: None,
+            scene,
+        };
+        let before = ColorImage::filled([200, 200], Color32::from_rgb(0, 255, 0));
+        let mut after = before.clone();
+        let slice = Slice { axis: 2, at };
+        let farthest = Cut::default().paint(&slice, &request, &film, &mut after);
+        (before, after, farthest)
+    }
+
+    #[test]
+    fn the_plane_shows_inside_surface_and_outside() {
+        let (before, after, farthest) = cut(0.0);
+        // the middle of the ball is farther from its surface than the corners of the room
+        assert!((farthest.unwrap() - 0.5).abs() < 1e-3, "{farthest:?}");
+        // along a row through the middle: pixels are 0.01 wide
+        let pixel = |x: f32| after.pixels[100 * 200 + (100.0 + 100.0 * x) as usize];
+        assert_eq!(pixel(0.7), before.pixels[0], "beside the plane");
+        let (inside, surface, outside) = (pixel(0.1), pixel(0.5), pixel(0.6));
+        assert!(outside.r() > outside.b(), "{outside:?}");
+        assert!(surface.r() < 110 && surface.b() < 110, "{surface:?}");
+        // behind the front of the ball the plane only shines through
+        assert!(inside.b() > 60 && inside.g() > 140, "{inside:?}");
+    }
+
+    #[test]
+    fn a_plane_before_the_surface_hides_it() {
+        let (_, after, _) = cut(0.57);
+        let middle = after.pixels[100 * 200 + 100];
+        assert!(middle.r() > 180 && middle.g() < 250, "{middle:?}");
+    }
+}

@@ -1,51 +1,62 @@
 //! What the picture took.
 
+use crate::engine::Exposed;
 use crate::session::Session;
-use eframe::egui::{Align, Layout, RichText, Ui};
+use eframe::egui::{Align, Layout, Response, RichText, Ui};
 
-/// Frame time, evaluations, resolution, rays a pixel, and what renders.
+/// Frame time, evaluations, resolution, rays a pixel, and what renders; of two looks, for each.
 pub fn status(ui: &mut Ui, session: &Session) {
-    let quiet = |text: String| RichText::new(text).small().weak();
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 18.0;
         match &session.shown {
             None => {
-                ui.label(quiet("no picture yet".to_owned()));
+                quiet(ui, "no picture yet".to_owned());
             }
             Some(shown) => {
-                let [width, height] = shown.rung.size;
-                let samples = shown.rung.samples();
-                let rays = if samples == 1 {
-                    "1 ray a pixel".to_owned()
-                } else {
-                    format!("{samples} rays a pixel")
-                };
-                let evaluations = shown.evaluations.total() as f64 / shown.rays.max(1) as f64;
-                let about = |name: &str| format!("{name} of the picture that is shown");
-                ui.label(quiet(spoken(shown.seconds)))
-                    .on_hover_text(about("Rendering time"));
-                ui.label(quiet(format!("{evaluations:.1} evaluations a ray")))
-                    .on_hover_text("Evaluations of the field, of all stages, for each primary ray");
-                ui.label(quiet(format!("{width} x {height}")))
-                    .on_hover_text(about("Pixels"));
-                ui.label(quiet(rays));
+                let is_one = shown.sides.len() == 1;
+                for (side, name) in shown.sides.iter().zip(["A", "B"]) {
+                    if !is_one {
+                        ui.label(RichText::new(name).small().strong());
+                    }
+                    figures(ui, side, is_one);
+                }
                 let state = if shown.is_last {
                     "finished"
                 } else {
                     "refining"
                 };
-                ui.label(quiet(state.to_owned()));
+                quiet(ui, state.to_owned());
             }
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let backend = session
-                .backend
-                .clone()
-                .unwrap_or_else(|| "starting".to_owned());
-            ui.label(quiet(backend))
-                .on_hover_text("What renders the picture");
+            let backend = session.backend.as_deref().unwrap_or("starting");
+            quiet(ui, backend.to_owned()).on_hover_text("What renders the picture");
         });
     });
+}
+
+/// What one picture took.
+fn figures(ui: &mut Ui, side: &Exposed, is_long: bool) {
+    let [width, height] = side.rung.size;
+    let evaluations = side.evaluations.total() as f64 / side.rays.max(1) as f64;
+    quiet(ui, spoken(side.seconds)).on_hover_text("Rendering time of the picture that is shown");
+    quiet(ui, format!("{evaluations:.1} evaluations a ray"))
+        .on_hover_text("Evaluations of the field, of all stages, for each primary ray");
+    if is_long {
+        quiet(ui, format!("{width} x {height}"))
+            .on_hover_text("Pixels of the picture that is shown");
+    }
+    quiet(
+        ui,
+        match side.rung.samples() {
+            1 => "1 ray a pixel".to_owned(),
+            samples => format!("{samples} rays a pixel"),
+        },
+    );
+}
+
+fn quiet(ui: &mut Ui, text: String) -> Response {
+    ui.label(RichText::new(text).small().weak())
 }
 
 /// A time in three digits.

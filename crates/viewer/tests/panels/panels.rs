@@ -350,6 +350,19 @@ fn views_of_numbers_have_a_legend() {
 }
 
 #[test]
+fn what_the_scene_prints_is_shown() {
+    let mut session = session();
+    session.absorb(outcome(
+        "print(\"volume\", 42)\nshow(sphere())",
+        &Options::default(),
+    ));
+    let harness = harness(session, |ui, session| {
+        panel::log(ui, &session.current.as_ref().unwrap().loaded.log);
+    });
+    assert!(harness.query_by_label("volume 42").is_some());
+}
+
+#[test]
 fn the_help_lists_every_key() {
     let mut harness = Harness::builder()
         .with_size([900.0, 900.0])
