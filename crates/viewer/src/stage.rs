@@ -15,6 +15,8 @@ use std::sync::Arc;
 
 /// How much nearer a notch of the wheel brings, by its points.
 const ZOOM: f64 = 0.0022;
+/// How far looking around turns, for what orbiting would turn by the same way.
+const LOOK: f64 = 0.5;
 /// Half the width of what can be grabbed of the divider, points.
 const GRIP: f32 = 7.0;
 /// Share of the width that an arrow key moves the divider by.
@@ -24,6 +26,8 @@ const NUDGE: f32 = 0.02;
 #[derive(Default)]
 pub(crate) struct Stage {
     textures: [Option<TextureHandle>; 2],
+    /// What drags the picture, and where it was last.
+    held: Option<(PointerButton, Pos2)>,
     /// Where the picture is, points.
     pub(crate) rect: Option<Rect>,
 }
@@ -101,26 +105,19 @@ impl Stage {
     }
 
     /// Drags, wheel and clicks.
-    fn hand(&self, ui: &Ui, session: &mut Session, response: &Response, rect: Rect) {
+    fn hand(&mut self, ui: &Ui, session: &mut Session, response: &Response, rect: Rect) {
         let height = f64::from(rect.height().max(1.0));
-        let (delta, modifiers) = (response.drag_delta(), ui.input(|i| i.modifiers));
-        let [right, down] = [delta.x, delta.y].map(f64::from);
-        let moved = delta != Vec2::ZERO;
-        let pans = [PointerButton::Secondary, PointerButton::Middle];
-        if moved && response.dragged_by(PointerButton::Primary) && !modifiers.shift {
+        if let Some((button, way)) = self.travel(ui, response) {
+            let modifiers = ui.input(|i| i.modifiers);
+            let [right, down] = [way.x, way.y].map(f64::from);
             let [yaw, pitch] = [right, down].map(|x| x * PI / height);
-            if modifiers.alt || flight(ui.ctx()) != DVec3::ZERO {
-                let fov = 0.5;
-                session.rig.look(-fov * yaw, -fov * pitch);
+            if button != PointerButton::Primary || modifiers.shift {
+                session.rig.pan(right, down, height);
+            } else if modifiers.alt || flight(ui.ctx()) != DVec3::ZERO {
+                session.rig.look(LOOK * yaw, LOOK * pitch);
             } else {
                 session.rig.orbit(yaw, pitch);
             }
-            session.is_free = true;
-        } else if moved
-            && (response.dragged_by(PointerButton::Primary)
-                || pans.iter().any(|b| response.dragged_by(*b)))
-        {
-            session.rig.pan(right, down, height);
             session.is_free = true;
         }
         if response.dragged() {
@@ -141,6 +138,27 @@ impl Stage {
                 session.rig.centre(self.under(session, ui.ctx(), rect, at));
                 session.is_free = true;
             }
+        }
+    }
+
+    /// How far the hand moved what it holds since the last frame. On a slow machine a press, moves and the release can come
+    /// together in a frame: nothing of the way is lost.
+    fn travel(&mut self, ui: &Ui, response: &Response) -> Option<(PointerButton, Vec2)> {
+        let at = ui.input(|i| i.pointer.interact_pos())?;
+        if response.dragged() {
+            let buttons = [
+                PointerButton::Primary,
+                PointerButton::Secondary,
+                PointerButton::Middle,
+            ];
+            let button = buttons.into_iter().find(|b| response.dragged_by(*b))?;
+            let origin = || ui.input(|i| i.pointer.press_origin()).unwrap_or(at);
+            let before = self.held.map_or_else(origin, |(_, before)| before);
+            self.held = Some((button, at));
+            (at != before).then_some((button, at - before))
+        } else {
+            let (button, before) = self.held.take()?;
+            (response.drag_stopped() && at != before).then_some((button, at - before))
         }
     }
 

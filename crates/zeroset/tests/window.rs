@@ -13,6 +13,8 @@ use std::time::{Duration, Instant};
 
 /// How long a slow machine may take for anything.
 const PATIENCE: Duration = Duration::from_secs(180);
+/// How long something that was done may take to be seen, before it is done again.
+const AGAIN: Duration = Duration::from_secs(30);
 /// Between two looks at the screen.
 const PAUSE: Duration = Duration::from_millis(250);
 /// Between moving the mouse and pressing it: the window has to see that it is there.
@@ -229,31 +231,42 @@ impl Window {
     /// Looks at the screen until it is as it should be.
     #[track_caller]
     fn until(&mut self, what: &str, is_so: impl Fn(&Shot) -> bool) -> Shot {
+        self.until_after(what, |_| {}, is_so)
+    }
+
+    /// Does something, and looks at the screen until it is as it should be. A hand that was too fast for a machine under
+    /// load does it again.
+    #[track_caller]
+    fn until_after(
+        &mut self,
+        what: &str,
+        act: impl Fn(&Window),
+        is_so: impl Fn(&Shot) -> bool,
+    ) -> Shot {
         let begun = Instant::now();
-        loop {
-            if let Some(shot) = self.shot()
-                && is_so(&shot)
-            {
-                return shot;
+        while begun.elapsed() < PATIENCE {
+            act(self);
+            let acted = Instant::now();
+            while acted.elapsed() < AGAIN {
+                if let Some(shot) = self.shot()
+                    && is_so(&shot)
+                {
+                    return shot;
+                }
+                if let Some(status) = self.program.as_mut().unwrap().try_wait().unwrap() {
+                    panic!("the program ended with {status} before {what}");
+                }
+                std::thread::sleep(PAUSE);
             }
-            if let Some(status) = self.program.as_mut().unwrap().try_wait().unwrap() {
-                panic!("the program ended with {status} before {what}");
-            }
-            if begun.elapsed() > PATIENCE {
-                let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("window.png");
-                let mut command = Command::new("import");
-                let _ = command
-                    .args(["-window", "root"])
-                    .arg(&path)
-                    .env("DISPLAY", &self.display)
-                    .status();
-                panic!(
-                    "waited in vain for {what}; the screen is in {}",
-                    path.display()
-                );
-            }
-            std::thread::sleep(PAUSE);
         }
+        let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("window.png");
+        let mut command = Command::new("import");
+        let command = command.args(["-window", "root"]).arg(&path);
+        let _ = command.env("DISPLAY", &self.display).status();
+        panic!(
+            "waited in vain for {what}; the screen is in {}",
+            path.display()
+        );
     }
 
     /// Presses the mouse at one place and lets it go at another.
@@ -296,19 +309,24 @@ fn a_scene_is_opened_turned_changed_broken_and_mended() {
         "the ball is not left of the box"
     );
 
-    // half a turn to the right: what was left is right
-    window.drag((300, 300), (300 + 740, 300));
-    window.until("the camera to turn", |s| {
+    // half a turn: what was left is right
+    let turn = |w: &Window| {
+        w.xdotool(&["key", "Home"]);
+        w.drag((300, 300), (300 + 740, 300));
+    };
+    window.until_after("the camera to turn", turn, |s| {
         s.red().0 > 1000 && s.green().0 > 1000 && s.red().1 > s.green().1 + 100.0
     });
-    window.xdotool(&["key", "Home"]);
-    window.until("the camera to come back", |s| {
+    let back = |w: &Window| {
+        w.xdotool(&["key", "Home"]);
+    };
+    window.until_after("the camera to come back", back, |s| {
         s.red().1 + 100.0 < s.green().1
     });
 
     let (low, high, y) = SLIDER;
-    window.drag((low + (high - low) / 4, y), (high, y));
-    let shot = window.until("a larger ball", |s| s.red().0 > 2 * small);
+    let grow = |w: &Window| w.drag((low + (high - low) / 4, y), (high, y));
+    let shot = window.until_after("a larger ball", grow, |s| s.red().0 > 2 * small);
     assert!(shot.wrong() < 100);
 
     let yellow = SCENE.replace("#e00000", "#e0d000");

@@ -129,6 +129,37 @@ fn the_mouse_orbits_pans_and_zooms() {
     assert!(at(&harness).distance() < 0.95 * before);
 }
 
+/// A slow machine sees a press, the way and the release in a few frames, or in two.
+#[test]
+fn no_part_of_a_drag_is_lost() {
+    let mut ends = Vec::new();
+    for steps in [1, 2, 5] {
+        let mut harness = window(1.0);
+        let (from, way) = (pos2(300.0, 300.0), eframe::egui::vec2(200.0, -30.0));
+        let button = |pos, pressed| eframe::egui::Event::PointerButton {
+            pos,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        };
+        harness.event(eframe::egui::Event::PointerMoved(from));
+        harness.step();
+        harness.event(button(from, true));
+        for step in 1..=steps {
+            let at = from + way * (step as f32 / steps as f32);
+            harness.event(eframe::egui::Event::PointerMoved(at));
+            harness.step();
+        }
+        harness.event(button(from + way, false));
+        harness.run();
+        ends.push(harness.state().session().rig.camera().eye);
+    }
+    assert!(
+        ends.iter().all(|e| (*e - ends[0]).length() < 1e-4),
+        "{ends:?}"
+    );
+}
+
 #[test]
 fn keys_do_what_the_list_says() {
     let mut harness = window(1.0);
