@@ -225,12 +225,13 @@ impl Gpu {
         compiles: bool,
         stop: &dyn Fn() -> bool,
     ) -> Result<(), GpuError> {
-        let patience = if compiles { COMPILING } else { PATIENCE };
+        let usual = if compiles { COMPILING } else { PATIENCE };
+        let patience = self.faults.patience().unwrap_or(usual);
         let began = Instant::now();
         loop {
             let wait = PollType::Wait {
                 submission_index: Some(submission.clone()),
-                timeout: Some(LOOK),
+                timeout: Some(LOOK.min(patience)),
             };
             // wgpu panics where the driver reports the loss of the device while it is waited for
             match catch_unwind(AssertUnwindSafe(|| self.device.poll(wait))) {
@@ -240,7 +241,7 @@ impl Gpu {
                 }
                 Ok(Err(PollError::Timeout)) if began.elapsed() < patience => self.check()?,
                 Ok(Err(PollError::Timeout)) => {
-                    let seconds = patience.as_secs();
+                    let seconds = patience.as_secs_f32();
                     self.status
                         .lose(&format!("it did not answer for {seconds} s"));
                 }

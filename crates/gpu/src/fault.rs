@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
 
 /// What goes wrong and when. Things are counted from 0 over the life of the renderer, devices that were lost included.
 #[derive(Clone, Debug, Default)]
@@ -17,6 +18,8 @@ struct Plan {
     losses: BTreeSet<u64>,
     /// Devices that are not given.
     devices: BTreeSet<u64>,
+    /// How long a submission may take.
+    patience: Option<Duration>,
     counts: [u64; 3],
 }
 
@@ -49,6 +52,13 @@ impl Faults {
         self
     }
 
+    /// A device that does not finish a submission in this time is given up, also where it compiles.
+    #[must_use]
+    pub fn with_patience(self, patience: Duration) -> Faults {
+        self.plan(|plan| plan.patience = Some(patience));
+        self
+    }
+
     /// Allocations, submissions and devices so far.
     pub fn counts(&self) -> [u64; 3] {
         self.plan(|plan| plan.counts)
@@ -73,6 +83,10 @@ impl Faults {
             let number = count(&mut plan.counts[2]);
             plan.devices.contains(&number)
         })
+    }
+
+    pub(crate) fn patience(&self) -> Option<Duration> {
+        self.plan(|plan| plan.patience)
     }
 
     fn plan<T>(&self, with: impl FnOnce(&mut Plan) -> T) -> T {

@@ -174,3 +174,63 @@ pub(crate) fn refused(backend: Backend, adapter: Option<&str>) -> Result<(), Fai
     }
     Ok(())
 }
+
+#[cfg(all(test, feature = "gpu"))]
+mod tests {
+    use super::*;
+    use std::cell::Cell;
+    use zeroset_gpu::testing::{Faults, with_faults};
+    use zeroset_scene::load::{Language, Options, load_text};
+    use zeroset_scene::render::Silent;
+
+    type Outcome = Result<(Frame, Used), RenderError>;
+
+    /// A picture by a GPU without memory, and how often it was begun anew.
+    fn rendered(test: &str, falls_back: bool) -> Option<(Outcome, u32)> {
+        let gpu = with_faults(test, Faults::default().with_memory(20_000))?;
+        let console = Console::silent();
+        let engine = Engine {
+            gpu: RefCell::new(Some(gpu)),
+            falls_back,
+            ..Engine::new(Backend::Cpu, None, Some(1), &console).expect("the CPU")
+        };
+        let options = Options {
+            size: Some([64, 48]),
+            ..Options::default()
+        };
+        let text = "show(sphere())";
+        let loaded = load_text("a.star", text, Language::Starlark, None, &options);
+        let scene = loaded.expect("a valid scene").scene;
+        let restarts = Cell::new(0);
+        let result = engine.render(&scene, &Silent, &|| restarts.set(restarts.get() + 1));
+        if result.is_ok() {
+            // the GPU is not asked again
+            let again = engine.render(&scene, &Silent, &|| restarts.set(9));
+            assert_eq!(again.map(|(_, used)| used), Ok(Used::Cpu));
+        }
+        Some((result, restarts.get()))
+    }
+
+    #[test]
+    fn the_cpu_stands_in_for_a_gpu_that_fails() {
+        let Some((result, restarts)) = rendered("the_cpu_stands_in_for_a_gpu_that_fails", true)
+        else {
+            return;
+        };
+        let (frame, used) = result.expect("a picture");
+        assert!(frame.statistics.hits > 100);
+        assert_eq!((used, restarts), (Used::Cpu, 1));
+    }
+
+    #[test]
+    fn a_gpu_that_was_asked_for_fails_with_advice() {
+        let Some((result, _)) = rendered("a_gpu_that_was_asked_for_fails_with_advice", false)
+        else {
+            return;
+        };
+        match result {
+            Err(RenderError::Device { advice, .. }) => assert!(advice.is_some()),
+            other => panic!("{:?}", other.map(|(_, used)| used)),
+        }
+    }
+}

@@ -62,6 +62,15 @@ impl Console {
         Console { colour, quiet }
     }
 
+    /// One that says only what went wrong, without a log.
+    #[cfg(all(test, feature = "gpu"))]
+    pub(crate) fn silent() -> Console {
+        Console {
+            colour: false,
+            quiet: true,
+        }
+    }
+
     /// A note, unless `--quiet`.
     pub(crate) fn note(&self, text: impl fmt::Display) {
         if !self.quiet {

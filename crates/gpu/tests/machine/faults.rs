@@ -2,8 +2,9 @@
 
 use crate::{Counting, check, toy};
 use std::sync::PoisonError;
+use std::time::{Duration, Instant};
 use zeroset_gpu::testing::{Faults, with_faults};
-use zeroset_gpu::{Choice, GpuError, GpuRenderer};
+use zeroset_gpu::{Choice, GpuError, GpuRenderer, Kind};
 use zeroset_scene::film::Film;
 use zeroset_scene::render::{RenderError, Silent};
 
@@ -127,6 +128,25 @@ fn a_device_that_is_not_given_is_an_error() {
         Some(GpuError::NoAdapter { .. }) => println!("there is no adapter to refuse a device"),
         other => panic!("{other:?}"),
     }
+}
+
+#[test]
+fn a_device_that_does_not_answer_is_lost() {
+    let faults = Faults::default().with_patience(Duration::from_micros(200));
+    let Some(renderer) = with_faults("a_device_that_does_not_answer_is_lost", faults) else {
+        return;
+    };
+    // milliseconds of work in one workgroup, where software does it
+    let job = toy([8, 8], 1, 65_000.0);
+    let began = Instant::now();
+    match renderer.render_into(&job, &mut Film::new(8, 8), &Silent) {
+        Err(error @ GpuError::Lost { .. }) => {
+            assert!(error.to_string().contains("did not answer"), "{error}");
+        }
+        Ok(_) if renderer.adapter().kind != Kind::Software => println!("a fast device"),
+        other => panic!("{other:?}"),
+    }
+    assert!(began.elapsed() < Duration::from_secs(30));
 }
 
 #[test]
