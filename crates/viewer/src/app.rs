@@ -13,8 +13,8 @@ use crate::stage::{Stage, cards, flight};
 use crate::style::{self, GAP, PANEL, Palette};
 use crate::widget::section;
 use eframe::egui::{
-    Align, Align2, Button, CentralPanel, Context, Frame, Id, Key, Layout, Margin, Modal, Modifiers,
-    Panel, RichText, ScrollArea, TextEdit, Theme, Ui,
+    Align2, Button, CentralPanel, Context, Frame, Id, Key, Margin, Modal, Modifiers, Panel,
+    RichText, ScrollArea, TextEdit, Theme, Ui,
 };
 use glam::DVec3;
 use std::time::{Duration, Instant};
@@ -190,41 +190,45 @@ impl App {
                 .to_string_lossy();
             ui.label(RichText::new(file).small().weak())
                 .on_hover_text(self.session.path.display().to_string());
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                ui.spacing_mut().item_spacing.x = GAP;
-                ui.toggle_value(&mut self.is_panel_open, "Panel")
-                    .on_hover_text("Shows or hides the panel (P).");
-                ui.toggle_value(&mut self.is_help_open, "Help")
-                    .on_hover_text("Keys and mouse (? or F1).");
-                let dark = ui.visuals().dark_mode;
-                let (word, theme) = if dark {
-                    ("Light", Theme::Light)
-                } else {
-                    ("Dark", Theme::Dark)
-                };
-                if ui
-                    .button(word)
-                    .on_hover_text("The other theme.")
-                    .accessible_name("Change the theme")
-                    .clicked()
-                {
-                    ui.ctx().set_theme(theme);
-                }
-                if ui
-                    .button("Save…")
-                    .on_hover_text("Saves the picture (Ctrl+S).")
-                    .clicked()
-                {
-                    self.ask_for_name();
-                }
-                let mut on = self.session.comparison.is_on;
-                ui.toggle_value(&mut self.session.is_sliced, "Slice")
-                    .on_hover_text("A plane through the field (X).");
-                ui.toggle_value(&mut on, "Compare")
-                    .on_hover_text("Two settings beside each other (C).");
-                set_comparison(&mut self.session, on);
-            });
+            // at the right side, and yet from left to right, which is the order of the Tab key
+            let id = Id::unique("width of the buttons");
+            let width = ui.data(|d| d.get_temp(id)).unwrap_or(0.0);
+            ui.add_space((ui.available_width() - width).max(0.0));
+            let buttons = ui.horizontal(|ui| self.buttons(ui)).response.rect.width();
+            if buttons != width {
+                ui.data_mut(|d| d.insert_temp(id, buttons));
+                ui.ctx().request_repaint();
+            }
         });
+    }
+
+    fn buttons(&mut self, ui: &mut Ui) {
+        ui.spacing_mut().item_spacing.x = GAP;
+        let mut on = self.session.comparison.is_on;
+        ui.toggle_value(&mut on, "Compare")
+            .on_hover_text("Two settings beside each other (C).");
+        set_comparison(&mut self.session, on);
+        ui.toggle_value(&mut self.session.is_sliced, "Slice")
+            .on_hover_text("A plane through the field (X).");
+        let save = ui
+            .button("Save…")
+            .on_hover_text("Saves the picture (Ctrl+S).");
+        if save.clicked() {
+            self.ask_for_name();
+        }
+        let (word, theme) = if ui.visuals().dark_mode {
+            ("Light", Theme::Light)
+        } else {
+            ("Dark", Theme::Dark)
+        };
+        let other = ui.button(word).on_hover_text("The other theme.");
+        if other.accessible_name("Change the theme").clicked() {
+            ui.ctx().set_theme(theme);
+        }
+        ui.toggle_value(&mut self.is_help_open, "Help")
+            .on_hover_text("Keys and mouse (? or F1).");
+        ui.toggle_value(&mut self.is_panel_open, "Panel")
+            .on_hover_text("Shows or hides the panel (P).");
     }
 
     fn side(&mut self, ui: &mut Ui) {

@@ -279,6 +279,18 @@ fn tab_goes_through_every_control() {
         }
         seen.push(name);
     }
+    let place = |name: &str| seen.iter().position(|(_, n)| n == name);
+    let order = [
+        "Compare",
+        "Slice",
+        "Save…",
+        "Change the theme",
+        "Help",
+        "Panel",
+        "bite",
+        "March",
+    ];
+    assert!(order.is_sorted_by_key(|name| place(name)), "{seen:?}");
     let names: HashSet<&str> = seen.iter().map(|(_, name)| name.as_str()).collect();
     for name in [
         "Compare", "Slice", "Save…", "Help", "bite", "style", "March", "Exposure", "Play",
