@@ -104,11 +104,24 @@ impl Drop for Window {
 /// Why there is no window.
 enum Missing {
     Tool(String),
+    /// Another server took the screen's number at the same moment, which X servers do not keep apart.
+    Screen(String),
     Device(String),
 }
 
 impl Window {
     fn open(scene: &str) -> Result<Window, Missing> {
+        for _ in 0..5 {
+            match Window::try_open(scene) {
+                Err(Missing::Screen(reason)) => eprintln!("once more: {reason}"),
+                other => return other,
+            }
+            std::thread::sleep(4 * PAUSE);
+        }
+        Window::try_open(scene)
+    }
+
+    fn try_open(scene: &str) -> Result<Window, Missing> {
         for tool in ["Xvfb", "xdotool", "import"] {
             let paths = std::env::var_os("PATH").unwrap_or_default();
             if !std::env::split_paths(&paths).any(|p| p.join(tool).is_file()) {
@@ -136,7 +149,7 @@ impl Window {
             program: None,
         };
         if number.trim().is_empty() {
-            return Err(Missing::Tool("Xvfb gives no screen".into()));
+            return Err(Missing::Screen("Xvfb gives no screen".into()));
         }
         let mut command = Command::new(env!("CARGO_BIN_EXE_zeroset"));
         command
@@ -175,6 +188,9 @@ impl Window {
                     .unwrap();
                 if said.contains("no graphics device") {
                     return Err(Missing::Device(said));
+                }
+                if said.contains("no screen") {
+                    return Err(Missing::Screen(said));
                 }
                 panic!("the program ended with {status}: {said}");
             }
@@ -295,7 +311,7 @@ impl Window {
 fn a_scene_is_opened_turned_changed_broken_and_mended() {
     let mut window = match Window::open(SCENE) {
         Ok(window) => window,
-        Err(Missing::Tool(reason) | Missing::Device(reason)) => {
+        Err(Missing::Tool(reason) | Missing::Screen(reason) | Missing::Device(reason)) => {
             let needed = std::env::var("ZEROSET_REQUIRE_GPU").is_ok_and(|v| v == "1");
             assert!(!needed, "{reason}");
             eprintln!("not tested: {reason}");
