@@ -9,7 +9,7 @@ use std::sync::Arc;
 use wgpu::{BindGroup, BindGroupEntry, BindingResource, Buffer, BufferBinding, BufferUsages};
 use zeroset_scene::film::{Film, Plane};
 use zeroset_shader::Job;
-use zeroset_shader::entry::{Binding, COUNTERS, ENTRIES};
+use zeroset_shader::entry::{Binding, COUNTERS, ENTRIES, UNIFORM_NUMBERS};
 use zeroset_shader::layout::{Frame, Tile};
 
 /// All buffers of a device that pictures are rendered with.
@@ -43,6 +43,10 @@ impl Memory {
                 Binding::Tile => continue,
                 Binding::Frame => (size_of::<Frame>() as u64, input),
                 Binding::Params => (self.allowed(gpu, "the parameters", &job.params)?, input),
+                Binding::Numbers => {
+                    let usage = BufferUsages::UNIFORM | BufferUsages::COPY_DST;
+                    (4 * UNIFORM_NUMBERS as u64, usage)
+                }
                 Binding::Code => (self.allowed(gpu, "the field", &job.code)?, input),
                 Binding::Table => (self.allowed(gpu, "the images", &job.table)?, input),
                 other => sizes.of(other).unwrap_or((0, input)),
@@ -117,6 +121,9 @@ impl Memory {
         };
         put(Binding::Frame, bytemuck::bytes_of(frame));
         put(Binding::Params, bytemuck::cast_slice(&job.params));
+        if job.params.len() <= UNIFORM_NUMBERS {
+            put(Binding::Numbers, bytemuck::cast_slice(&job.params));
+        }
         let has_code = (self.code.as_ref()).is_some_and(|code| Arc::ptr_eq(code, &job.code));
         if !has_code {
             put(Binding::Code, bytemuck::cast_slice(&job.code));

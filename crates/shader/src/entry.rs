@@ -10,6 +10,9 @@ pub const MARGIN: u32 = 2;
 /// occlusion, shadows, materials, and for primary rays and hits.
 pub const COUNTERS: u32 = 16;
 
+/// Numbers in the uniform buffer of the field's parameters: every GPU has room for them.
+pub const UNIFORM_NUMBERS: usize = 4096;
+
 /// A buffer of bind group 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
@@ -37,11 +40,15 @@ pub enum Binding {
     Planes = 9,
     /// [`COUNTERS`] atomic `u32`.
     Counters = 10,
+    /// Parameters of the field, if they are at most [`UNIFORM_NUMBERS`]: `array<vec4f>`, uniform. What all threads read alike
+    /// is cheaper from there, and a driver that turns every read of a storage buffer into a loop over lanes compiles a large
+    /// field a hundred times as fast.
+    Numbers = 11,
 }
 
 impl Binding {
     /// All of them.
-    pub const ALL: [Binding; 11] = [
+    pub const ALL: [Binding; 12] = [
         Binding::Frame,
         Binding::Tile,
         Binding::Params,
@@ -53,6 +60,7 @@ impl Binding {
         Binding::Surface,
         Binding::Planes,
         Binding::Counters,
+        Binding::Numbers,
     ];
 
     /// Its declaration in WGSL.
@@ -69,6 +77,7 @@ impl Binding {
             Binding::Surface => ("storage, read_write", "surface_sums", "array<SurfaceSum>"),
             Binding::Planes => ("storage, read_write", "planes", "array<f32>"),
             Binding::Counters => ("storage, read_write", "counters", "array<atomic<u32>, 16>"),
+            Binding::Numbers => ("uniform", "numbers", "array<vec4f, 1024>"),
         };
         format!(
             "@group(0) @binding({}) var<{space}> {name}: {kind};\n",
@@ -92,6 +101,7 @@ pub const CONES_WIDE: Entry = Entry {
     bindings: &[
         Binding::Frame,
         Binding::Params,
+        Binding::Numbers,
         Binding::Code,
         Binding::Cones,
         Binding::Counters,
@@ -109,6 +119,7 @@ pub const TRACE: Entry = Entry {
         Binding::Frame,
         Binding::Tile,
         Binding::Params,
+        Binding::Numbers,
         Binding::Code,
         Binding::Table,
         Binding::Cones,

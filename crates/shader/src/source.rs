@@ -1,6 +1,6 @@
 //! The text of a shader module: the recorded field and the stages that a scene needs.
 
-use crate::entry::Binding;
+use crate::entry::{Binding, UNIFORM_NUMBERS};
 use crate::field::FieldSource;
 use crate::job::{FieldForm, LONGEST_COMPILED};
 use crate::layout::{
@@ -22,6 +22,8 @@ use zeroset_scene::settings::{March, Normals, Occlusion, Shading, Shadow};
 pub(crate) struct Key {
     structure: Arc<Structure>,
     interpreted: bool,
+    /// Whether the parameters fit the uniform buffer.
+    uniform: bool,
     march: u32,
     normals: Normals,
     shading: Shading,
@@ -38,6 +40,7 @@ impl Key {
             .chain([&scene.settings.occlusion]);
         let mut key = Key {
             interpreted: form == FieldForm::Interpreted,
+            uniform: program.params().len() <= UNIFORM_NUMBERS,
             structure,
             march: march_kind(&scene.settings.march),
             normals: scene.settings.normals,
@@ -77,7 +80,10 @@ impl Key {
         for binding in Binding::ALL {
             text += &binding.declaration();
         }
-        let (picture, code) = self.picture();
+        let (mut picture, code) = self.picture();
+        if self.uniform {
+            picture = read_uniform(&picture);
+        }
         text += &picture;
         for stage in [
             include_str!("stage/count_main.wgsl"),
@@ -226,6 +232,18 @@ impl Key {
             "Openness(1.0, at.normal)",
         )
     }
+}
+
+/// The text with every `params[i]` read from the uniform buffer, four numbers a row.
+fn read_uniform(text: &str) -> String {
+    let mut parts = text.split("params[");
+    let mut out = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        // indices hold no brackets: they are sums of names and literals
+        let (index, rest) = part.split_once(']').unwrap_or((part, ""));
+        out += &format!("param({index}){rest}");
+    }
+    out + "\nfn param(i: u32) -> f32 {\n    return numbers[i >> 2u][i & 3u];\n}\n"
 }
 
 /// A function that returns `otherwise` but in some cases.

@@ -1,0 +1,370 @@
+//! One suite that holds all renderers together: every scene of `scenes/` on the plain renderer, the SIMD renderer and the
+//! GPU, every method on both, and planted faults that must turn it red.
+//!
+//! The GPU's part runs on any adapter, software included, and says why it did not run where there is none.
+
+use std::path::{Path, PathBuf};
+use zeroset::gpu::{GpuRenderer, testing};
+use zeroset::output::compare::conform::{BUDGETS, Budget, Difference, compare, differing};
+use zeroset::scene::film::{Film, Plane};
+use zeroset::scene::load::{Options, load};
+use zeroset::scene::render::{Renderer, Silent};
+use zeroset::scene::scene::Scene;
+use zeroset::scene::settings::{
+    Antialias, Filter, March, Normals, Occlusion, Settings, Shading, Shadow,
+};
+use zeroset::shader::FieldForm;
+use zeroset::trace::CpuRenderer;
+use zeroset::trace::plain::{self, Compiled};
+
+const SIZE: [u32; 2] = [96, 72];
+
+fn folder(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+/// Every scene that shows something, with one ray through the middle of every pixel.
+fn scenes() -> Vec<(String, Scene)> {
+    let mut found = Vec::new();
+    for group in ["", "papers", "gallery"] {
+        let entries = std::fs::read_dir(folder("../../scenes").join(group)).unwrap();
+        for path in entries.map(|entry| entry.unwrap().path()) {
+            if path.extension().is_some_and(|e| e == "star") {
+                let name = path.file_stem().unwrap().to_string_lossy();
+                found.push((format!("{group}/{name}"), scene(&path)));
+            }
+        }
+    }
+    found.sort_by(|a, b| a.0.cmp(&b.0));
+    assert!(found.len() > 20);
+    found
+}
+
+fn scene(path: &Path) -> Scene {
+    let options = Options {
+        size: Some(SIZE),
+        ..Options::default()
+    };
+    let mut scene = load(path, &options)
+        .unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+        .scene;
+    scene.settings.antialias = Antialias::None;
+    scene
+}
+
+fn hello() -> Scene {
+    scene(&folder("../../scenes/hello.star"))
+}
+
+fn on(renderer: &dyn Renderer, scene: &Scene) -> Film {
+    renderer.render(scene, &Silent).expect("a picture").film
+}
+
+fn reference(scene: &Scene) -> Film {
+    let renderer = CpuRenderer::new(None).unwrap();
+    let picture = renderer.prepare(scene).expect("a program");
+    let program = picture.program();
+    plain::render(scene, &program.bounds(), || Compiled::new(program, None))
+}
+
+/// How much a plane changes where every ray stops a twentieth of a pixel earlier. Fractals, noise and far cities have detail
+/// finer than a pixel: what is seen of it hangs on the last bits of a hit, in any renderer.
+fn restless(scene: &Scene) -> impl Fn(&Budget) -> f64 {
+    let mut nearer = scene.clone();
+    nearer.settings.footprint *= 0.9;
+    let renderer = CpuRenderer::new(None).unwrap();
+    let (a, b, scene) = (on(&renderer, scene), on(&renderer, &nearer), scene.clone());
+    move |budget| compare(&scene, &b, &a, budget).share
+}
+
+/// What differs by more than is allowed, with the scene's name; nothing if all is well.
+fn check(name: &str, scene: &Scene, film: &Film, reference: &Film) -> Option<String> {
+    let restless = restless(scene);
+    let budgets = BUDGETS.map(|budget| Budget {
+        share: budget.share + 2.0 * restless(&budget),
+        ..budget
+    });
+    let off = differing(scene, film, reference, &budgets);
+    let line = |d: &Difference| format!("{:?} {:.4} (mean {:.4})", d.plane, d.share, d.mean);
+    let off: Vec<String> = off.iter().map(line).collect();
+    (!off.is_empty()).then(|| format!("{name}: {}", off.join(", ")))
+}
+
+#[track_caller]
+fn none(failures: Vec<String>) {
+    assert!(failures.is_empty(), "\n{}", failures.join("\n"));
+}
+
+#[test]
+fn the_simd_renderer_shows_every_scene_as_the_plain_one() {
+    let renderer = CpuRenderer::new(None).unwrap();
+    let all = scenes().into_iter().filter_map(|(name, scene)| {
+        check(&name, &scene, &on(&renderer, &scene), &reference(&scene))
+    });
+    none(all.collect());
+}
+
+#[test]
+fn the_gpu_shows_every_scene_as_the_simd_renderer() {
+    let Some(gpu) = testing::renderer("scenes on the GPU") else {
+        return;
+    };
+    let renderer = CpuRenderer::new(None).unwrap();
+    let all = scenes().into_iter().filter_map(|(name, scene)| {
+        check(&name, &scene, &on(&gpu, &scene), &on(&renderer, &scene))
+    });
+    none(all.collect());
+}
+
+#[test]
+fn an_interpreted_field_is_the_compiled_one() {
+    let Some(gpu) = testing::renderer("interpreted fields") else {
+        return;
+    };
+    let gpu = gpu.with_form(FieldForm::Interpreted);
+    let renderer = CpuRenderer::new(None).unwrap();
+    let few = [
+        "/hello",
+        "papers/keinert_city",
+        "gallery/joins",
+        "gallery/julia",
+    ];
+    let all = scenes()
+        .into_iter()
+        .filter(|(name, _)| few.contains(&name.as_str()))
+        .filter_map(|(name, scene)| {
+            check(&name, &scene, &on(&gpu, &scene), &on(&renderer, &scene))
+        });
+    none(all.collect());
+}
+
+/// Every method that a scene can choose, once.
+fn methods() -> Vec<(String, Scene)> {
+    let base = hello();
+    let mut all = Vec::new();
+    let mut with = |edit: &dyn Fn(&mut Scene)| {
+        let mut scene = base.clone();
+        edit(&mut scene);
+        let (s, l) = (&scene.settings, &scene.lights[0].shadow);
+        let name = format!(
+            "{:?} {:?} {:?} {:?} {l:?}",
+            s.march, s.normals, s.shading, s.occlusion
+        );
+        all.push((name, scene));
+    };
+    for march in [
+        March::Fixed { step: 0.02 },
+        March::Sphere,
+        March::Relaxed { omega: 1.6 },
+        March::Enhanced { share: 0.9 },
+    ] {
+        with(&|s| {
+            (s.settings.march, s.settings.max_steps) = (march, 2000);
+        });
+    }
+    for normals in [
+        Normals::Tetrahedron,
+        Normals::Central,
+        Normals::Samples18,
+        Normals::Samples26,
+    ] {
+        with(&|s| s.settings.normals = normals);
+    }
+    for shading in [Shading::Lambert, Shading::LambertLegacy] {
+        with(&|s| s.settings.shading = shading);
+    }
+    for shadow in [
+        Shadow::None,
+        Shadow::Hard,
+        Shadow::Soft { sharpness: 8.0 },
+        Shadow::SoftClosest { sharpness: 8.0 },
+    ] {
+        with(&|s| s.lights.iter_mut().for_each(|l| l.shadow = shadow));
+    }
+    let (step, scale, bend, reach) = (0.12, 1.2, 0.1, 1.0);
+    for occlusion in [
+        Occlusion::None,
+        Occlusion::Quilez {
+            steps: 5,
+            step,
+            scale,
+        },
+        Occlusion::Bent {
+            steps: 5,
+            step,
+            scale,
+            bend,
+        },
+        Occlusion::Evans { scale, step, bend },
+        Occlusion::Upward { scale },
+        Occlusion::Hemisphere { rays: 16, reach },
+        Occlusion::Obscurance {
+            rays: 16,
+            reach,
+            tau: 2.0,
+        },
+    ] {
+        with(&|s| s.settings.occlusion = occlusion);
+        with(&|s| s.objects[0].occlusion = Some(occlusion));
+    }
+    with(&|s| s.settings.prepass = false);
+    with(&|s| s.settings.discontinuity_reduction = 0);
+    // without cones, which are of other sizes on the GPU: rays that run out of steps stop where they are
+    with(&|s| {
+        (s.settings.max_steps, s.settings.prepass) = (12, false);
+    });
+    with(&|s| {
+        (s.settings.max_steps, s.settings.prepass) = (12, false);
+        s.settings.hit_selection = false;
+    });
+    all
+}
+
+#[test]
+fn the_gpu_has_every_method() {
+    let Some(gpu) = testing::renderer("methods on the GPU") else {
+        return;
+    };
+    let renderer = CpuRenderer::new(None).unwrap();
+    let all = methods().into_iter().filter_map(|(name, scene)| {
+        check(&name, &scene, &on(&gpu, &scene), &on(&renderer, &scene))
+    });
+    none(all.collect());
+}
+
+#[test]
+fn the_gpu_filters_as_the_cpu() {
+    let Some(gpu) = testing::renderer("filters on the GPU") else {
+        return;
+    };
+    let renderer = CpuRenderer::new(None).unwrap();
+    for filter in [Filter::Box, Filter::Tent, Filter::Mitchell] {
+        let mut scene = hello();
+        scene.settings.antialias = Antialias::Supersample { samples: 5, filter };
+        // here everything counts: silhouettes are what filters are for
+        let (a, b) = (on(&gpu, &scene), on(&renderer, &scene));
+        for plane in [Plane::Colour, Plane::Coverage] {
+            let pairs = a.plane(plane).iter().zip(b.plane(plane));
+            let square: f32 = pairs.map(|(x, y)| (x - y) * (x - y)).sum();
+            let rms = (square / a.plane(plane).len() as f32).sqrt();
+            assert!(rms < 0.01, "{filter:?} {plane:?}: {rms}");
+        }
+    }
+}
+
+/// Faults in the text of a shader, each of which must be noticed in a plane.
+const FAULTS: [(&str, &str, &str, Plane); 9] = [
+    (
+        "rays that stop too early",
+        "return frame.threshold.x * t + frame.threshold.y;",
+        "return 8.0 * (frame.threshold.x * t + frame.threshold.y);",
+        Plane::Depth,
+    ),
+    (
+        "a camera that is off by half a pixel",
+        "vec2f(pixel) + within",
+        "vec2f(pixel) + within + 0.5",
+        Plane::Depth,
+    ),
+    (
+        "normals inside out",
+        "* found.side;",
+        "* -found.side;",
+        Plane::Normal,
+    ),
+    (
+        "shadows that start too late",
+        "const BEAM_FIRST: f32 = 2.0;",
+        "const BEAM_FIRST: f32 = 200.0;",
+        Plane::Shadow,
+    ),
+    (
+        "cones that are too wide",
+        "const CONE_TANGENT: f32 = 0.5153882;",
+        "const CONE_TANGENT: f32 = 0.7;",
+        Plane::Occlusion,
+    ),
+    (
+        "a sky that is dark",
+        "(0.5 * frame.ambient)",
+        "(0.4 * frame.ambient)",
+        Plane::Colour,
+    ),
+    (
+        "materials that are mixed up",
+        "which * MATERIAL_ROWS",
+        "0u * which",
+        Plane::Albedo,
+    ),
+    (
+        "objects that are counted from one",
+        "marks.object + 1.0",
+        "marks.object + 2.0",
+        Plane::Object,
+    ),
+    (
+        "residuals that are not measured",
+        "abs(residual)",
+        "abs(residual) + 2.0 * pixel_here",
+        Plane::Residual,
+    ),
+];
+
+#[test]
+fn planted_faults_are_noticed() {
+    let Some(gpu) = testing::renderer("planted faults") else {
+        return;
+    };
+    let scene = hello();
+    let right = on(&CpuRenderer::new(None).unwrap(), &scene);
+    let draw = |gpu: &GpuRenderer, from: &str, to: &str| {
+        let mut job = gpu.prepare(&scene).expect("a job");
+        assert!(job.source.contains(from), "no `{from}` in the shader");
+        job.source = job.source.replace(from, to).into();
+        let mut film = Film::new(SIZE[0], SIZE[1]);
+        gpu.render_into(&job, &mut film, &Silent)
+            .expect("a picture");
+        film
+    };
+    for (what, from, to, plane) in FAULTS {
+        let off = differing(&scene, &draw(&gpu, from, to), &right, &BUDGETS);
+        assert!(
+            off.iter().any(|d| d.plane == plane),
+            "{what} went unnoticed: {off:?}"
+        );
+        none(
+            check(
+                "the same without the fault",
+                &scene,
+                &draw(&gpu, from, from),
+                &right,
+            )
+            .into_iter()
+            .collect(),
+        );
+    }
+}
+
+#[test]
+fn steps_are_counted_alike() {
+    let Some(gpu) = testing::renderer("steps on the GPU") else {
+        return;
+    };
+    let mut scene = hello();
+    // without cones both march every ray from the same place
+    scene.settings = Settings {
+        prepass: false,
+        ..scene.settings
+    };
+    let (a, b) = (
+        on(&gpu, &scene),
+        on(&CpuRenderer::new(None).unwrap(), &scene),
+    );
+    let budget = Budget {
+        plane: Plane::Steps,
+        tolerance: 4.0,
+        share: 0.02,
+    };
+    let found = compare(&scene, &a, &b, &budget);
+    assert!(found.share <= budget.share && found.mean < 1.0, "{found:?}");
+}
