@@ -2,6 +2,7 @@
 
 use crate::error::GpuError;
 use std::fmt;
+use std::path::Path;
 use std::str::FromStr;
 use wgpu::{Backend, Backends, DeviceType, DownlevelFlags, Features, Limits};
 
@@ -74,7 +75,7 @@ pub struct AdapterInfo {
     pub name: String,
     /// What it is.
     pub kind: Kind,
-    /// The interface that it is reached by: Vulkan, Metal, DirectX 12 or OpenGL.
+    /// The interface that it is reached by: Vulkan, Metal or DirectX 12.
     pub backend: &'static str,
     /// The driver and its version.
     pub driver: String,
@@ -170,18 +171,16 @@ fn lack(adapter: &wgpu::Adapter, name: &str) -> Result<(), GpuError> {
     first.map_or(Ok(()), Err)
 }
 
-/// All adapters of some backends.
+/// All adapters.
+#[derive(Default)]
 pub(crate) struct Adapters {
     adapters: Vec<(AdapterInfo, wgpu::Adapter)>,
 }
 
-/// Backends whose drivers are made for computing. OpenGL is asked only by those who name an adapter: its drivers cannot be
-/// interrupted, have no timestamps here, and some write to standard error when they are looked for.
-const COMMON: Backends = Backends::PRIMARY;
-
 impl Adapters {
     /// Looks for adapters, the best first.
-    pub(crate) fn find(backends: Backends) -> Adapters {
+    pub(crate) fn find() -> Adapters {
+        let backends = Backends::PRIMARY;
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
             backends,
             flags: wgpu::InstanceFlags::empty().with_env(),
@@ -193,17 +192,17 @@ impl Adapters {
             .map(|adapter| (AdapterInfo::new(&adapter), adapter))
             .collect();
         // stable: the system's own order within a kind
-        adapters.sort_by_key(|(info, _)| (info.backend == "OpenGL", info.kind));
+        adapters.sort_by_key(|(info, _)| info.kind);
         Adapters { adapters }
     }
 
     /// The adapter that a choice means.
     pub(crate) fn choose(choice: &Choice) -> Result<wgpu::Adapter, GpuError> {
-        let backends = match choice {
-            Choice::Named(_) => COMMON | Backends::GL,
-            _ => COMMON,
+        let all = if *choice == Choice::Auto && !may_have_gpu() {
+            Adapters::default()
+        } else {
+            Adapters::find()
         };
-        let all = Adapters::find(backends);
         let best = all.adapters.iter().find(|(info, _)| match choice {
             Choice::Auto => is_automatic(info),
             Choice::Any => info.lack.is_none(),
@@ -226,9 +225,22 @@ impl Adapters {
     }
 }
 
+/// Whether the system may have a GPU at all. To ask the drivers takes 40 ms, and some of them print on a system without a
+/// screen; on Linux the kernel tells at once.
+fn may_have_gpu() -> bool {
+    let devices = [
+        "/dev/dri",
+        "/dev/nvidiactl",
+        "/dev/dxg",
+        "/dev/mali0",
+        "/dev/kgsl-3d0",
+    ];
+    !cfg!(target_os = "linux") || devices.iter().any(|path| Path::new(path).exists())
+}
+
 fn is_automatic(info: &AdapterInfo) -> bool {
     let real = matches!(info.kind, Kind::Discrete | Kind::Integrated | Kind::Virtual);
-    real && info.backend != "OpenGL" && info.lack.is_none()
+    real && info.lack.is_none()
 }
 
 fn told(info: &AdapterInfo) -> String {
@@ -241,7 +253,7 @@ fn told(info: &AdapterInfo) -> String {
 
 /// All adapters, the best first, and the number of the one that [`Choice::Auto`] takes.
 pub fn adapters() -> (Vec<AdapterInfo>, Option<usize>) {
-    let all = Adapters::find(COMMON | Backends::GL);
+    let all = Adapters::find();
     let infos: Vec<_> = all.adapters.into_iter().map(|(info, _)| info).collect();
     let automatic = infos.iter().position(is_automatic);
     (infos, automatic)
@@ -269,7 +281,6 @@ mod tests {
         assert!(is_automatic(&info("a", Kind::Integrated, "Metal")));
         assert!(!is_automatic(&info("a", Kind::Software, "Vulkan")));
         assert!(!is_automatic(&info("a", Kind::Other, "Vulkan")));
-        assert!(!is_automatic(&info("a", Kind::Discrete, "OpenGL")));
         let lack = Some(GpuError::NoCompute {
             adapter: "a".into(),
         });

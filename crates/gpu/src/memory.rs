@@ -9,7 +9,7 @@ use std::sync::Arc;
 use wgpu::{BindGroup, BindGroupEntry, BindingResource, Buffer, BufferBinding, BufferUsages};
 use zeroset_scene::film::{Film, Plane};
 use zeroset_shader::Job;
-use zeroset_shader::entry::{Binding, COUNTERS, ENTRIES, UNIFORM_NUMBERS};
+use zeroset_shader::entry::{Binding, COUNTERS, ENTRIES, UNIFORM_NUMBERS, UNIFORM_ROWS};
 use zeroset_shader::layout::{Frame, Tile};
 
 /// All buffers of a device that pictures are rendered with.
@@ -38,15 +38,14 @@ impl Memory {
         sizes: &Sizes,
     ) -> Result<(), GpuError> {
         let input = BufferUsages::STORAGE | BufferUsages::COPY_DST;
+        let uniform = BufferUsages::UNIFORM | BufferUsages::COPY_DST;
         for binding in Binding::ALL {
             let (bytes, usage) = match binding {
                 Binding::Tile => continue,
                 Binding::Frame => (size_of::<Frame>() as u64, input),
                 Binding::Params => (self.allowed(gpu, "the parameters", &job.params)?, input),
-                Binding::Numbers => {
-                    let usage = BufferUsages::UNIFORM | BufferUsages::COPY_DST;
-                    (4 * UNIFORM_NUMBERS as u64, usage)
-                }
+                Binding::Numbers => (4 * UNIFORM_NUMBERS as u64, uniform),
+                Binding::Rows => (16 * UNIFORM_ROWS as u64, uniform),
                 Binding::Code => (self.allowed(gpu, "the field", &job.code)?, input),
                 Binding::Table => (self.allowed(gpu, "the images", &job.table)?, input),
                 other => sizes.of(other).unwrap_or((0, input)),
@@ -130,6 +129,9 @@ impl Memory {
         }
         if self.table != job.table {
             put(Binding::Table, bytemuck::cast_slice(&job.table));
+            if job.table.len() <= UNIFORM_ROWS {
+                put(Binding::Rows, bytemuck::cast_slice(&job.table));
+            }
             self.table.clone_from(&job.table);
         }
         self.code = Some(Arc::clone(&job.code));

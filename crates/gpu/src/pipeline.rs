@@ -13,7 +13,7 @@ use wgpu::{
     PipelineCompilationOptions, PipelineLayout, ShaderStages,
 };
 use zeroset_scene::render::{Observer, RenderError};
-use zeroset_shader::entry::{Binding, ENTRIES, UNIFORM_NUMBERS};
+use zeroset_shader::entry::{Binding, ENTRIES, UNIFORM_NUMBERS, UNIFORM_ROWS};
 use zeroset_shader::layout::{Frame, Tile};
 
 /// Entry points.
@@ -65,6 +65,7 @@ fn layout(binding: Binding) -> BindGroupLayoutEntry {
         Binding::Tile => (storage(true), size_of::<Tile>()),
         Binding::Params | Binding::Code | Binding::Table => (storage(true), 0),
         Binding::Numbers => (BufferBindingType::Uniform, 4 * UNIFORM_NUMBERS),
+        Binding::Rows => (BufferBindingType::Uniform, 16 * UNIFORM_ROWS),
         _ => (storage(false), 0),
     };
     BindGroupLayoutEntry {

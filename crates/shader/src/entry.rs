@@ -12,6 +12,8 @@ pub const COUNTERS: u32 = 16;
 
 /// Numbers in the uniform buffer of the field's parameters: every GPU has room for them.
 pub const UNIFORM_NUMBERS: usize = 4096;
+/// Rows in the uniform buffer of the table.
+pub const UNIFORM_ROWS: usize = 1024;
 
 /// A buffer of bind group 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -44,11 +46,13 @@ pub enum Binding {
     /// is cheaper from there, and a driver that turns every read of a storage buffer into a loop over lanes compiles a large
     /// field a hundred times as fast.
     Numbers = 11,
+    /// The table, if it has at most [`UNIFORM_ROWS`]: `array<vec4f>`, uniform.
+    Rows = 12,
 }
 
 impl Binding {
     /// All of them.
-    pub const ALL: [Binding; 12] = [
+    pub const ALL: [Binding; 13] = [
         Binding::Frame,
         Binding::Tile,
         Binding::Params,
@@ -61,13 +65,14 @@ impl Binding {
         Binding::Planes,
         Binding::Counters,
         Binding::Numbers,
+        Binding::Rows,
     ];
 
     /// Its declaration in WGSL.
     pub(crate) fn declaration(self) -> String {
         let (space, name, kind) = match self {
-            Binding::Frame => ("storage, read", "frame", "Frame"),
-            Binding::Tile => ("storage, read", "tile", "Tile"),
+            Binding::Frame => ("storage, read", "given_frame", "Frame"),
+            Binding::Tile => ("storage, read", "given_tile", "Tile"),
             Binding::Params => ("storage, read", "params", "array<f32>"),
             Binding::Code => ("storage, read", "code", "array<u32>"),
             Binding::Table => ("storage, read", "table", "array<vec4f>"),
@@ -78,6 +83,7 @@ impl Binding {
             Binding::Planes => ("storage, read_write", "planes", "array<f32>"),
             Binding::Counters => ("storage, read_write", "counters", "array<atomic<u32>, 16>"),
             Binding::Numbers => ("uniform", "numbers", "array<vec4f, 1024>"),
+            Binding::Rows => ("uniform", "rows", "array<vec4f, 1024>"),
         };
         format!(
             "@group(0) @binding({}) var<{space}> {name}: {kind};\n",
@@ -122,6 +128,7 @@ pub const TRACE: Entry = Entry {
         Binding::Numbers,
         Binding::Code,
         Binding::Table,
+        Binding::Rows,
         Binding::Cones,
         Binding::Samples,
         Binding::Counters,

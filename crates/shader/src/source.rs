@@ -1,6 +1,6 @@
 //! The text of a shader module: the recorded field and the stages that a scene needs.
 
-use crate::entry::{Binding, UNIFORM_NUMBERS};
+use crate::entry::{Binding, UNIFORM_NUMBERS, UNIFORM_ROWS};
 use crate::field::FieldSource;
 use crate::job::{FieldForm, LONGEST_COMPILED};
 use crate::layout::{
@@ -22,8 +22,10 @@ use zeroset_scene::settings::{March, Normals, Occlusion, Shading, Shadow};
 pub(crate) struct Key {
     structure: Arc<Structure>,
     interpreted: bool,
-    /// Whether the parameters fit the uniform buffer.
-    uniform: bool,
+    /// Whether the parameters fit their uniform buffer.
+    uniform_params: bool,
+    /// Whether the table fits its uniform buffer.
+    uniform_table: bool,
     march: u32,
     normals: Normals,
     shading: Shading,
@@ -33,14 +35,16 @@ pub(crate) struct Key {
 }
 
 impl Key {
-    pub(crate) fn new(scene: &Scene, program: &Program, form: FieldForm) -> Key {
+    /// `rows`: those of the table.
+    pub(crate) fn new(scene: &Scene, program: &Program, form: FieldForm, rows: usize) -> Key {
         let structure = program.shared_structure();
         let methods = (scene.objects.iter())
             .filter_map(|o| o.occlusion.as_ref())
             .chain([&scene.settings.occlusion]);
         let mut key = Key {
             interpreted: form == FieldForm::Interpreted,
-            uniform: program.params().len() <= UNIFORM_NUMBERS,
+            uniform_params: program.params().len() <= UNIFORM_NUMBERS,
+            uniform_table: rows <= UNIFORM_ROWS,
             structure,
             march: march_kind(&scene.settings.march),
             normals: scene.settings.normals,
@@ -80,9 +84,13 @@ impl Key {
         for binding in Binding::ALL {
             text += &binding.declaration();
         }
+        text += "/// Copies, which stay in registers.\nvar<private> frame: Frame;\nvar<private> tile: Tile;\n";
         let (mut picture, code) = self.picture();
-        if self.uniform {
-            picture = read_uniform(&picture);
+        if self.uniform_params {
+            picture = calls(&picture, "params[", "param(") + PARAM;
+        }
+        if self.uniform_table {
+            picture = calls(&picture, "table[", "row(") + ROW;
         }
         text += &picture;
         for stage in [
@@ -234,17 +242,31 @@ impl Key {
     }
 }
 
-/// The text with every `params[i]` read from the uniform buffer, four numbers a row.
-fn read_uniform(text: &str) -> String {
-    let mut parts = text.split("params[");
+/// The text with reads of an array as calls of a function.
+fn calls(text: &str, read: &str, call: &str) -> String {
+    let mut parts = text.split(read);
     let mut out = parts.next().unwrap_or_default().to_owned();
     for part in parts {
         // indices hold no brackets: they are sums of names and literals
         let (index, rest) = part.split_once(']').unwrap_or((part, ""));
-        out += &format!("param({index}){rest}");
+        out += &format!("{call}{index}){rest}");
     }
-    out + "\nfn param(i: u32) -> f32 {\n    return numbers[i >> 2u][i & 3u];\n}\n"
+    out
 }
+
+/// A parameter, from the uniform buffer.
+const PARAM: &str = "
+fn param(i: u32) -> f32 {
+    return numbers[i >> 2u][i & 3u];
+}
+";
+
+/// A row of the table, from the uniform buffer.
+const ROW: &str = "
+fn row(i: u32) -> vec4f {
+    return rows[i];
+}
+";
 
 /// A function that returns `otherwise` but in some cases.
 fn switch(signature: &str, kind: &str, cases: String, otherwise: &str) -> String {

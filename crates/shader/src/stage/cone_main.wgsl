@@ -2,6 +2,7 @@
 
 @compute @workgroup_size(8, 8, 1)
 fn cones_wide(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) local: u32) {
+    frame = given_frame;
     let across = cells_across(32u);
     let first = frame.band.x / 32u;
     let down = (frame.band.x + frame.band.y + 31u) / 32u - first;
@@ -15,6 +16,7 @@ fn cones_wide(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocatio
 
 @compute @workgroup_size(8, 8, 1)
 fn cones_narrow(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) local: u32) {
+    frame = given_frame;
     let across = cells_across(8u);
     let first = frame.band.x / 8u;
     let down = (frame.band.x + frame.band.y + 7u) / 8u - first;

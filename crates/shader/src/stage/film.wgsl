@@ -3,6 +3,8 @@
 /// Adds one sample of every pixel to the sums of the pixels of the tile.
 @compute @workgroup_size(8, 8, 1)
 fn gather(@builtin(global_invocation_id) id: vec3u) {
+    frame = given_frame;
+    tile = given_tile;
     if (id.x >= tile.size.x || id.y >= tile.size.y) {
         return;
     }
@@ -69,6 +71,8 @@ fn put3(place: u32, at: u32, value: vec3f) {
 /// Turns sums into the planes that are asked for, in the order of the film's planes.
 @compute @workgroup_size(8, 8, 1)
 fn develop(@builtin(global_invocation_id) id: vec3u) {
+    frame = given_frame;
+    tile = given_tile;
     if (id.x >= tile.size.x || id.y >= tile.size.y) {
         return;
     }

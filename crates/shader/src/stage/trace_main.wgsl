@@ -2,6 +2,8 @@
 
 @compute @workgroup_size(8, 8, 1)
 fn trace(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) local: u32) {
+    frame = given_frame;
+    tile = given_tile;
     if (id.x < tile.size.x && id.y < tile.size.y) {
         let pixel = tile.corner + id.xy;
         var span = vec3f(0.0, -1.0, FAR);

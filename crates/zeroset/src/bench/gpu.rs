@@ -22,7 +22,7 @@ const LEAST: usize = 3;
 pub(crate) struct GpuFrames {
     pub adapter: String,
     pub kind: String,
-    /// Vulkan, Metal, DirectX 12 or OpenGL.
+    /// Vulkan, Metal or DirectX 12.
     pub interface: &'static str,
     pub driver: String,
     /// Width and height.
