@@ -162,11 +162,12 @@ impl Job {
             places[*plane as usize] = at;
             at += plane.channels() as u32 * count * self.frame.size[0];
         }
+        let detail = (planes.iter()).any(|p| !matches!(p, Plane::Colour | Plane::Coverage));
         let mut frame = Frame {
             band: [from, to - from, first, count],
             planes_a: [places[0], places[1], places[2], places[3]],
             planes_b: [places[4], places[5], places[6], places[7]],
-            planes_c: [places[8], places[9], u32::MAX, u32::MAX],
+            planes_c: [places[8], places[9], u32::from(detail), 0],
             ..self.frame
         };
         let [across, down] = frame.cells(CONE_SIDES[0]);

@@ -144,7 +144,7 @@ shared! {
         planes_a: [u32; 4],
         /// Planes 4 to 7.
         planes_b: [u32; 4],
-        /// Planes 8 and 9.
+        /// Planes 8 and 9; then whether anything but colour and coverage is asked for.
         planes_c: [u32; 4],
     }
 

@@ -87,10 +87,10 @@ impl Key {
         text += "/// Copies, which stay in registers.\nvar<private> frame: Frame;\nvar<private> tile: Tile;\n";
         let (mut picture, code) = self.picture();
         if self.uniform_params {
-            picture = calls(&picture, "params[", "param(") + PARAM;
+            picture = calls(&picture, "params[", "param_at(") + PARAM;
         }
         if self.uniform_table {
-            picture = calls(&picture, "table[", "row(") + ROW;
+            picture = calls(&picture, "table[", "table_at(") + ROW;
         }
         text += &picture;
         for stage in [
@@ -256,14 +256,14 @@ fn calls(text: &str, read: &str, call: &str) -> String {
 
 /// A parameter, from the uniform buffer.
 const PARAM: &str = "
-fn param(i: u32) -> f32 {
+fn param_at(i: u32) -> f32 {
     return numbers[i >> 2u][i & 3u];
 }
 ";
 
 /// A row of the table, from the uniform buffer.
 const ROW: &str = "
-fn row(i: u32) -> vec4f {
+fn table_at(i: u32) -> vec4f {
     return rows[i];
 }
 ";

@@ -57,6 +57,11 @@ fn leave(ray: Ray, slope: f32, constant: f32) -> f32 {
     return max(min(min(t.x, t.y), min(t.z, FAR)), 0.0);
 }
 
+/// Whether anything but colour and coverage is asked for.
+fn wants_detail() -> bool {
+    return frame.planes_c.z != 0u;
+}
+
 /// Full width of a pixel at distance `t`.
 fn pixel_width(t: f32) -> f32 {
     return frame.pixel.x * t + frame.pixel.y;

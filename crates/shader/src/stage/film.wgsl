@@ -11,10 +11,8 @@ fn gather(@builtin(global_invocation_id) id: vec3u) {
     let pixel = tile.corner + id.xy;
     let at = (pixel.y - frame.band.z) * frame.size.x + pixel.x;
     var light = LightSum(vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
-    var surface = SurfaceSum(vec3f(0.0), -1.0, vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
     if (tile.index > 0u) {
         light = light_sums[at];
-        surface = surface_sums[at];
     }
     var reach = 0;
     if (frame.samples != 0u) {
@@ -35,11 +33,23 @@ fn gather(@builtin(global_invocation_id) id: vec3u) {
             light.weight += w;
         }
     }
-    let own = samples[(pixel.y - frame.band.x) * frame.size.x + pixel.x];
-    light.steps += own.steps;
-    light.rays += 1.0;
+    if (wants_detail()) {
+        let own = samples[(pixel.y - frame.band.x) * frame.size.x + pixel.x];
+        light.steps += own.steps;
+        light.rays += 1.0;
+        light.hits += select(0.0, 1.0, own.depth >= 0.0);
+        gather_surface(at, own);
+    }
+    light_sums[at] = light;
+}
+
+/// Adds a pixel's own ray to the sums of what it hit.
+fn gather_surface(at: u32, own: Sample) {
+    var surface = SurfaceSum(vec3f(0.0), -1.0, vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
+    if (tile.index > 0u) {
+        surface = surface_sums[at];
+    }
     if (own.depth >= 0.0) {
-        light.hits += 1.0;
         surface.normal += own.normal;
         surface.albedo += own.albedo;
         surface.open += own.open;
@@ -50,7 +60,6 @@ fn gather(@builtin(global_invocation_id) id: vec3u) {
             surface.object = own.object;
         }
     }
-    light_sums[at] = light;
     surface_sums[at] = surface;
 }
 
@@ -79,13 +88,16 @@ fn develop(@builtin(global_invocation_id) id: vec3u) {
     let pixel = tile.corner + id.xy;
     let at = (pixel.y - frame.band.z) * frame.size.x + pixel.x;
     let light = light_sums[at];
-    let surface = surface_sums[at];
     let weight = max(light.weight, 1e-6);
-    let hits = max(light.hits, 1.0);
-    let nothing = light.hits == 0.0;
     // the filter's negative lobes can make a dark pixel beside a bright one less than black
     put3(frame.planes_a.x, at, max(light.colour / weight, vec3f(0.0)));
     put(frame.planes_a.y, at, clamp(light.cover / weight, 0.0, 1.0));
+    if (!wants_detail()) {
+        return;
+    }
+    let surface = surface_sums[at];
+    let hits = max(light.hits, 1.0);
+    let nothing = light.hits == 0.0;
     put(frame.planes_a.z, at, select(surface.depth, frame.miss, nothing));
     let length_of = length(surface.normal);
     put3(frame.planes_a.w, at, select(vec3f(0.0), surface.normal / max(length_of, 1e-20), length_of > 0.0));

@@ -38,9 +38,10 @@ fn trace_ray(pixel: vec2u, index: u32, ray: Ray, span: vec3f) -> Sample {
     }
     var t = found.t;
     var residual = found.f;
-    // where the footprint of the pixel meets the surface (Keinert 2014, 3.4, equations 2 and 3); the last turn finds what is
-    // left there
-    for (var k = 0u; k <= frame.placing && frame.placing > 0u; k++) {
+    // where the footprint of the pixel meets the surface (Keinert 2014, 3.4, equations 2 and 3); a turn more finds what is left
+    // there
+    let turns = select(0u, frame.placing + select(0u, 1u, wants_detail()), frame.placing > 0u);
+    for (var k = 0u; k < turns; k++) {
         residual = found.side * field(ray.origin + ray.direction * t);
         counted[COUNT_MARCH] += 1u;
         if (k < frame.placing) {
