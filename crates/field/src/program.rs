@@ -203,8 +203,9 @@ impl Program {
     pub fn is_fractal(&self) -> bool {
         let primitives = &catalogue().primitives;
         (self.structure.values.instructions.iter()).any(|i| match i.operation {
-            Operation::Leaf(code) => (primitives.iter())
-                .any(|p| p.code == code && p.exactness == Exactness::Estimate),
+            Operation::Leaf(code) => {
+                (primitives.iter()).any(|p| p.code == code && p.exactness == Exactness::Estimate)
+            }
             _ => false,
         })
     }

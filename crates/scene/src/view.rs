@@ -54,7 +54,12 @@ pub struct View {
     pub threshold: Linear,
     /// Share of a pixel's width that is its footprint.
     footprint: f32,
+    /// Share of a pixel's footprint that rays are marched with: in small pictures as if they were of [`FINE`] rows.
+    pub fine: f32,
 }
+
+/// Rays of pictures with fewer rows are marched as if they had this many: their pixels are wider than what is to be seen.
+pub const FINE: u32 = 512;
 
 impl View {
     /// `footprint`: what is nearer to a ray than this many pixel widths is below what the picture shows.
@@ -91,6 +96,7 @@ impl View {
             rounding,
             threshold,
             footprint,
+            fine: (height as f32 / FINE as f32).min(1.0),
         }
     }
 

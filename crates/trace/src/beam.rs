@@ -209,13 +209,7 @@ fn sample<S: Simd, A: Aim<S>>(s: S, aim: &A, solid: &Solid<'_>, q: &mut Scratch)
 }
 
 #[inline(always)]
-fn advance<S: Simd, P: Penumbra<S>>(
-    s: S,
-    penumbra: P,
-    aimed: bool,
-    close: bool,
-    q: &mut Scratch,
-) {
+fn advance<S: Simd, P: Penumbra<S>>(s: S, penumbra: P, aimed: bool, close: bool, q: &mut Scratch) {
     let (beams, ended) = (&mut *q.beams, &mut q.ended);
     // how far rays may go, and what is shown as the distance
     let (free, shown) = if close {

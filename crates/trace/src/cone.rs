@@ -163,11 +163,16 @@ fn enclose<S: Simd>(s: S, cells: &Cells<'_>, count: usize, q: &mut Scratch) -> L
                     slope + view.threshold.slope,
                     splat(s, constant + view.threshold.constant),
                 );
-                let start = region.enter(o, d, slope, constant).max(view.near).max(load(
-                    s,
-                    &q.spans.start,
-                    i,
-                ));
+                let above = load(s, &q.spans.start, i);
+                let start = region
+                    .enter(o, d, slope, constant)
+                    .max(view.near)
+                    .max(above);
+                // what is known to be empty around the start of the larger cell is less around a later one
+                let radius = load(s, &q.spans.radius, i);
+                let left = (radius.abs() - (start - above)).max(0.0);
+                let left = Lanes::select(radius.below(0.0) & left.above(0.0), -left, left);
+                store(left, &mut q.spans.radius, i);
                 let end =
                     region
                         .leave(o, d, slope, constant)

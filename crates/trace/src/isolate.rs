@@ -2,14 +2,13 @@
 //! an end, along a plane or through a narrow gap.
 //!
 //! A part of the ray over which the field's range is above zero holds no surface, whatever its length; the others are halved,
-//! near ones first (Mitchell 1990, root isolation). For a field that is a bound the value in the middle of a part, less
-//! half its length, is a lower bound as well.
+//! near ones first (Mitchell 1990). The values at its ends help: with the slope of a field that is a bound, or with the range
+//! of its derivative along the ray, which needs fewer and fewer parts the shorter they are.
 
 use zeroset_field::bounds::Exactness;
 use zeroset_field::eval::Point;
 use zeroset_field::number::{Dual, F64, Interval, Vec3, v3};
 use zeroset_field::program::Program;
-use zeroset_scene::view::ROUNDING;
 
 /// A ray.
 #[derive(Clone, Copy, Debug)]
@@ -51,18 +50,32 @@ pub(crate) enum Crossing {
     Unknown(f32),
 }
 
+/// Evaluations in double precision of parameters in single precision are off by about this share of the coordinates.
+const ROUNDING: f64 = 1e-10;
 /// Instructions that a search may take.
 const WORK: usize = 400_000;
+
+/// A part of a ray.
+#[derive(Clone, Copy)]
+struct Part {
+    from: f64,
+    to: f64,
+    /// Whether its end is known to be behind the surface.
+    ends_behind: bool,
+}
 
 /// A search's memory.
 pub(crate) struct Isolation<'p> {
     program: &'p Program,
     ranges: Point<'p, Interval>,
+    slopes: Point<'p, Dual<Interval>>,
     values: Point<'p, F64>,
     gradients: Point<'p, Dual<F64>>,
     /// Whether the value changes by at most 1 per unit.
     bound: bool,
-    parts: Vec<[f64; 2]>,
+    /// Whether the value may jump.
+    chaotic: bool,
+    parts: Vec<Part>,
     evaluations: u64,
 }
 
@@ -71,9 +84,11 @@ impl<'p> Isolation<'p> {
         Isolation {
             program,
             ranges: Point::new(program),
+            slopes: Point::new(program),
             values: Point::new(program),
             gradients: Point::new(program),
             bound: program.exactness() <= Exactness::Bound,
+            chaotic: program.is_fractal(),
             parts: Vec::new(),
             evaluations: 0,
         }
@@ -90,6 +105,50 @@ impl<'p> Isolation<'p> {
         line.sided(self.values.value(v3(p[0], p[1], p[2])).0)
     }
 
+    /// Whether the field is nowhere below `limit` on a part of the ray, as far as is easily seen: by its range over the box
+    /// around it, by its slope where it is a bound, by the range of its derivative along the ray.
+    fn is_clear(&mut self, line: &Line, from: f64, to: f64, limit: f64) -> bool {
+        self.evaluations += 1;
+        let part = line.part(from, to);
+        let range = self.ranges.value(part);
+        let low = if line.inside { -range.hi } else { range.lo };
+        if low >= limit {
+            return true;
+        }
+        let ends = [self.value(line, from), self.value(line, to)];
+        let length = to - from;
+        if ends[0].min(ends[1]) < limit {
+            return false;
+        }
+        if self.bound && ends[0] + ends[1] - length >= 2.0 * limit {
+            return true;
+        }
+        if self.chaotic {
+            return false;
+        }
+        // f(t) >= f(from) + low (t - from) and f(t) >= f(to) - high (to - t)
+        self.evaluations += 1;
+        let d = self.slopes.value(Dual::point(part)).d;
+        let mut along = Interval::point(0.0);
+        for (slope, direction) in d.iter().zip(line.direction) {
+            along = along + *slope * Interval::point(f64::from(direction));
+        }
+        let (low, high) = if line.inside {
+            (-along.hi, -along.lo)
+        } else {
+            (along.lo, along.hi)
+        };
+        if !(low.is_finite() && high.is_finite()) {
+            return false;
+        }
+        if low >= 0.0 || high <= 0.0 {
+            return true;
+        }
+        // the two lines meet where both are least
+        let meet = (ends[1] - ends[0] - high * length) / (low - high);
+        ends[0] + low * meet.clamp(0.0, length) >= limit
+    }
+
     /// The distance to the surface at `t`, about: the value over the length of the gradient.
     pub(crate) fn distance(&mut self, line: &Line, t: f32) -> f32 {
         self.evaluations += 1;
@@ -103,51 +162,55 @@ impl<'p> Isolation<'p> {
     /// `least`.
     pub(crate) fn first(&mut self, line: &Line, start: f32, end: f32, least: f32) -> Crossing {
         let size = |p: [f64; 3]| p.iter().map(|c| c.abs()).sum::<f64>();
-        let behind = |t: f64| -0.5 * f64::from(ROUNDING) * size(line.at(t));
+        let behind = |t: f64| -ROUNDING * size(line.at(t));
         let instructions = self.program.structure().values.instructions.len();
         let most = (WORK / instructions.max(1)).max(64);
         let end = f64::from(end.min(f32::MAX));
         self.parts.clear();
-        self.parts.push([f64::from(start), end]);
+        self.parts.push(Part {
+            from: f64::from(start),
+            to: end,
+            ends_behind: false,
+        });
         let mut looked = 0;
-        while let Some([from, to]) = self.parts.pop() {
+        while let Some(Part {
+            from,
+            to,
+            ends_behind,
+        }) = self.parts.pop()
+        {
             looked += 1;
             if looked > most {
                 return Crossing::Unknown(from as f32);
             }
-            self.evaluations += 1;
-            let range = self.ranges.value(line.part(from, to));
-            let (low, high) = if line.inside {
-                (-range.hi, -range.lo)
-            } else {
-                (range.lo, range.hi)
-            };
-            if low >= behind(from).max(behind(to)) {
+            if !ends_behind && self.is_clear(line, from, to, behind(from).max(behind(to))) {
                 continue;
-            }
-            if high < behind(from).min(behind(to)) {
-                return Crossing::At(from as f32);
             }
             let middle = 0.5 * (from + to);
             let value = self.value(line, middle);
-            if self.bound && value >= 0.5 * (to - from) {
-                continue;
-            }
             let within = value < behind(middle);
             if to - from <= f64::from(least) {
-                if within {
-                    return Crossing::At(middle as f32);
+                match (within, ends_behind) {
+                    (true, _) => return Crossing::At(middle as f32),
+                    (false, true) => return Crossing::At(to as f32),
+                    (false, false) => continue,
                 }
-                continue;
             }
-            if !within {
-                self.parts.push([middle, to]);
+            // what lies behind a place that is behind the surface does not matter any more
+            if within {
+                self.parts.clear();
+            } else {
+                self.parts.push(Part {
+                    from: middle,
+                    to,
+                    ends_behind,
+                });
             }
-            // where the middle is behind the surface, the first place lies before it
-            self.parts.push([from, middle]);
-            if within && middle - from <= f64::from(least) {
-                return Crossing::At(middle as f32);
-            }
+            self.parts.push(Part {
+                from,
+                to: middle,
+                ends_behind: within,
+            });
         }
         Crossing::None
     }

@@ -103,12 +103,17 @@ impl Stream<'_> {
         p: Vec3<Lanes<S>>,
     ) -> Reach<Lanes<S>> {
         let view = self.solid.view;
-        let near = self.near.at(if self.narrows { t * view.narrow(ray) } else { t });
+        let near = self.near.at(if self.narrows {
+            t * view.narrow(ray)
+        } else {
+            t
+        });
         let rounding = view.rounding.at(t);
         let size = p.x.abs() + p.y.abs() + p.z.abs();
         Reach {
             near: near + rounding,
-            least: near * self.least + rounding,
+            least: near * self.least + rounding * 4.0,
+            tiny: rounding * 4.0,
             behind: size * (-0.5 * ROUNDING),
         }
     }

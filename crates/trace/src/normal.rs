@@ -1,6 +1,8 @@
 //! What is known of a hit once its ray has ended: the exact place, the residual, the normal.
 
-use crate::simd::{along, load, load_words, load3, sided, splat, splat3, store, store3};
+use crate::simd::{
+    along, first_lanes, load, load_words, load3, sided, splat, splat3, store, store3,
+};
 use crate::tile::{Hits, Scratch, Solid};
 use fearless_simd::{Simd, prelude::*};
 use zeroset_field::eval::{self, BATCH, Lane, Workspace};
@@ -12,12 +14,9 @@ use zeroset_scene::settings::{March, Normals};
 const LEAST_STEP: f32 = 1.0 / 16384.0;
 
 /// Halvings of the part of a ray in which the sign changes, each by a guess that is nearly right.
-const ROUNDS: u32 = 2;
+const ROUNDS: u32 = 3;
 /// As many where that part is a step of constant length.
 const FIXED_ROUNDS: u32 = 10;
-/// A guess leaves at least this share of the part on both sides of it.
-const MARGIN: f32 = 0.02;
-
 /// Finds the points where the sign changes, and the values there if they are wanted; then, `rounds` times, puts hits where the
 /// footprint of their pixel meets the surface (Keinert 2014, 3.4, equations 2 and 3).
 pub(crate) fn place<S: Simd>(
@@ -100,20 +99,15 @@ fn near<S: Simd>(s: S, solid: &Solid<'_>, hits: &Hits, i: usize) -> Lanes<S> {
 fn zero<S: Simd>(s: S, hits: &Hits, i: usize) -> Lanes<S> {
     let (f, behind) = (load(s, &hits.f, i).max(0.0), load(s, &hits.behind, i));
     let share = f / (f - behind).max(1e-30);
-    load(s, &hits.beyond, i) * share.clamp(MARGIN, 1.0 - MARGIN)
+    load(s, &hits.beyond, i) * share.clamp01()
 }
 
-/// Finds where the sign changes: false position, with the value at the end that stays halved each time (Illinois; Dowell and
-/// Jarratt 1971).
+/// Finds where the sign changes: false position, with the value at the end that stays a second time halved (Illinois; Dowell
+/// and Jarratt 1971).
 #[inline(always)]
-fn refine<S: Simd>(
-    s: S,
-    solid: &Solid<'_>,
-    rounds: u32,
-    k: usize,
-    n: usize,
-    q: &mut Scratch,
-) {
+fn refine<S: Simd>(s: S, solid: &Solid<'_>, rounds: u32, k: usize, n: usize, q: &mut Scratch) {
+    // 1 where the last guess was before the surface, -1 where it was behind it
+    let mut last = Lane::ZERO;
     for _ in 0..rounds {
         let hits = &q.hits;
         values_at(
@@ -138,16 +132,18 @@ fn refine<S: Simd>(
             let (t, beyond) = (load(s, &hits.t, k + i), load(s, &hits.beyond, k + i));
             let (f, behind) = (load(s, &hits.f, k + i), load(s, &hits.behind, k + i));
             let (open, past) = (beyond.above(0.0), value.below(0.0));
-            store(
-                Lanes::select(open & !past, t + by, t),
-                &mut hits.t,
-                k + i,
-            );
+            let before = load(s, &last.0, i);
+            let one = splat(s, 1.0);
+            let half = splat(s, 0.5);
+            store(Lanes::select(past, -one, one), &mut last.0, i);
+            let keep_front = Lanes::select(past & before.below(0.0), half, one);
+            let keep_back = Lanes::select(!past & before.above(0.0), half, one);
+            store(Lanes::select(open & !past, t + by, t), &mut hits.t, k + i);
             let rest = Lanes::select(past, by, beyond - by);
             store(Lanes::select(open, rest, beyond), &mut hits.beyond, k + i);
-            let front = Lanes::select(past, f * 0.5, value);
+            let front = Lanes::select(past, f * keep_front, value);
             store(Lanes::select(open, front, f), &mut hits.f, k + i);
-            let back = Lanes::select(past, value, behind * 0.5);
+            let back = Lanes::select(past, value, behind * keep_back);
             store(Lanes::select(open, back, behind), &mut hits.behind, k + i);
         }
     }
@@ -326,41 +322,85 @@ fn by_gradients<S: Simd>(s: S, solid: &Solid<'_>, q: &mut Scratch) {
         || {
             for k in (0..q.hits.count).step_by(BATCH) {
                 let n = (q.hits.count - k).min(BATCH);
-                fill(
-                    n,
-                    &mut q.work,
-                    #[inline(always)]
-                    |i| load3(s, &q.hits.point, k + i),
-                );
-                eval::gradients(s, solid.program, &mut q.work, n);
-                q.counts.normal += n as u64;
-                for i in (0..n).step_by(S::f32s::LEN) {
-                    finish(
-                        s,
-                        solid,
-                        &mut q.hits,
-                        k + i,
-                        load3(s, q.work.gradients(), i),
+                let mut away = Lane::ZERO;
+                for attempt in 0..2 {
+                    // what is seen faces the eye: on an edge the gradient may be that of the face behind it, and that of the one
+                    // before it is found a little nearer
+                    let hits = &q.hits;
+                    fill(
+                        n,
+                        &mut q.work,
+                        #[inline(always)]
+                        |i| {
+                            let (_, d) = solid.view.split(load3(s, &hits.ray, k + i));
+                            let by = load(s, &away.0, i) * near(s, solid, hits, k + i);
+                            along(load3(s, &hits.point, k + i), d, -by)
+                        },
                     );
+                    eval::gradients(s, solid.program, &mut q.work, n);
+                    q.counts.normal += n as u64;
+                    let mut any = false;
+                    for i in (0..n).step_by(S::f32s::LEN) {
+                        let g = load3(s, q.work.gradients(), i);
+                        let old = load(s, &away.0, i);
+                        let normal = normal_of(s, solid, &q.hits, k + i, g);
+                        let (_, d) = solid.view.split(load3(s, &q.hits.ray, k + i));
+                        let hidden = normal.dot(d).above(0.0);
+                        let normal = if attempt == 0 {
+                            normal
+                        } else {
+                            // what is still not seen is seen edge-on
+                            let before = load3(s, &q.hits.normal, k + i);
+                            let aside = (before - d * before.dot(d)).normalize();
+                            let turned = old.above(0.0);
+                            let new = turned & !hidden;
+                            let old = turned & hidden;
+                            v3(
+                                Lanes::select(new, normal.x, Lanes::select(old, aside.x, before.x)),
+                                Lanes::select(new, normal.y, Lanes::select(old, aside.y, before.y)),
+                                Lanes::select(new, normal.z, Lanes::select(old, aside.z, before.z)),
+                            )
+                        };
+                        store3(normal, &mut q.hits.normal, k + i);
+                        let hidden = hidden & first_lanes(s, n - i);
+                        any |= hidden.0.to_bitmask() != 0;
+                        let mark = Lanes::select(hidden, splat(s, 1.0), splat(s, 0.0));
+                        store(mark, &mut away.0, i);
+                    }
+                    if !any {
+                        break;
+                    }
                 }
             }
         },
     );
 }
 
-/// Normalises; where there is no gradient the normal looks back along the ray.
+/// Keeps the normal of a gradient.
 #[inline(always)]
 fn finish<S: Simd>(s: S, solid: &Solid<'_>, hits: &mut Hits, i: usize, g: Vec3<Lanes<S>>) {
+    let n = normal_of(s, solid, hits, i, g);
+    store3(n, &mut hits.normal, i);
+}
+
+/// Normalises; where there is no gradient the normal looks back along the ray.
+#[inline(always)]
+fn normal_of<S: Simd>(
+    s: S,
+    solid: &Solid<'_>,
+    hits: &Hits,
+    i: usize,
+    g: Vec3<Lanes<S>>,
+) -> Vec3<Lanes<S>> {
     let word = load_words(s, &hits.word, i);
     let (_, d) = solid.view.split(load3(s, &hits.ray, i));
     let square = g.length_squared();
     let fit = square.above(1e-36) & square.below(f32::INFINITY);
     let scale = square.lit(1.0) / square.sqrt();
     let n = g * sided(scale, word);
-    let n = v3(
+    v3(
         Lanes::select(fit, n.x, -d.x),
         Lanes::select(fit, n.y, -d.y),
         Lanes::select(fit, n.z, -d.z),
-    );
-    store3(n, &mut hits.normal, i);
+    )
 }

@@ -43,9 +43,9 @@ fn run<S: Simd, M: Marcher>(
 ) {
     let view = solid.view;
     let share = if solid.fractal {
-        FOOTPRINT / (solid.samples as f32).sqrt()
+        1.0 / (solid.samples as f32).sqrt()
     } else {
-        FOOTPRINT
+        view.fine
     };
     let how = Stream {
         solid,
@@ -90,8 +90,6 @@ fn run<S: Simd, M: Marcher>(
     }
 }
 
-/// Share of the footprint that counts as near.
-const FOOTPRINT: f32 = 1.0;
 /// Share of the footprint that a step is at least long. What is thinner may be passed.
 const LEAST: f32 = 1.0 / 16.0;
 
@@ -178,7 +176,7 @@ fn search(plan: &Plan, how: &Stream<'_>, area: &Area, q: &mut Scratch) {
         };
         let near = solid.view.near(t, solid.view.narrow(ray));
         let found = if plan.select && !solid.fractal {
-            isolation.first(&line, t, q.spans.end[k], near * LEAST)
+            isolation.first(&line, t, q.spans.end[k], near * solid.view.fine * LEAST)
         } else {
             Crossing::Unknown(t)
         };

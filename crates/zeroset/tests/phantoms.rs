@@ -62,12 +62,19 @@ fn phantoms(scene: &Scene, film: &Film, program: &Program) -> usize {
             continue;
         }
         let (x, y) = (i as u32 % width, i as u32 / width);
-        let (o, d) = scene.camera.ray(x as f32 + 0.5, y as f32 + 0.5, [width, height]);
+        let (o, d) = scene
+            .camera
+            .ray(x as f32 + 0.5, y as f32 + 0.5, [width, height]);
         let (o, d, t) = (o.as_dvec3(), d.as_dvec3(), f64::from(depth));
         let pixel = f64::from(slope) * t + f64::from(constant);
         // a ray may start inside: then it ends where the field is positive
-        let side = if f(o + d * f64::from(scene.camera.near)) < 0.0 { -1.0 } else { 1.0 };
-        let behind = (0..=400).any(|k| side * f(o + d * (t + pixel * 0.01 * (f64::from(k) - 100.0))) < 0.0);
+        let side = if f(o + d * f64::from(scene.camera.near)) < 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
+        let behind =
+            (0..=400).any(|k| side * f(o + d * (t + pixel * 0.01 * (f64::from(k) - 100.0))) < 0.0);
         count += usize::from(!behind);
     }
     count
@@ -76,7 +83,10 @@ fn phantoms(scene: &Scene, film: &Film, program: &Program) -> usize {
 #[test]
 fn behind_every_hit_is_a_solid() {
     let mut all = Vec::new();
-    scenes(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes"), &mut all);
+    scenes(
+        &Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes"),
+        &mut all,
+    );
     all.sort();
     let renderer = CpuRenderer::new(None).expect("threads");
     let mut failures = Vec::new();

@@ -169,9 +169,9 @@ pub const fn list(
 }
 
 /// The largest length a scene may state, in scene units.
-pub const LARGE: f64 = 1e6;
+pub const LARGE: f64 = 1e9;
 /// The smallest length of a thing that must have one.
-pub const SMALL: f64 = 1e-6;
+pub const SMALL: f64 = 1e-9;
 
 /// Whether a field lives in the plane or in space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

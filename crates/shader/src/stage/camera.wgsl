@@ -87,7 +87,8 @@ fn footprint(ray: Ray, t: f32) -> f32 {
 /// Share of the footprint that a step is at least long.
 const LEAST_SHARE: f32 = 0.0625;
 
-/// A value at `p` that is below this is behind the surface; one closer to zero may have its sign from rounding.
+/// A value at `p` that is below this is behind the surface. One closer to zero may have its sign from rounding: it is, where the
+/// value at the last place was negative too, for what rounding does is over within the step from there.
 fn behind_surface(p: vec3f) -> f32 {
     return -0.5 * ROUNDING * (abs(p.x) + abs(p.y) + abs(p.z));
 }

@@ -1,7 +1,8 @@
 // Primary rays. Every marcher evaluates the field in one place only: a driver copies the whole field there.
 //
 // A ray ends where the field changes its sign. Near the surface it guesses where that is, from the slope between its last
-// two samples. Below the least step nothing is proven any more: a body thinner than that may be passed.
+// two samples. Least steps along a surface are not proven any more, nor are tiny ones towards it: a body that is not longer
+// than that along the ray may be passed.
 
 /// Where a ray ended.
 struct Found {
@@ -18,14 +19,19 @@ struct Found {
 const GUESS_BEYOND: f32 = 1.1;
 /// Guesses are at most this many footprints long.
 const GUESS_LONGEST: f32 = 64.0;
+/// Rays of pictures with fewer rows are marched as if they had this many.
+const FINE_ROWS: f32 = 512.0;
+/// A ray goes towards a surface where the value falls by more than this along it.
+const TOWARDS: f32 = 0.02;
 /// Guesses of where the sign changes, between places where it has.
-const REFINEMENTS: u32 = 2u;
+const REFINEMENTS: u32 = 3u;
 
 /// Marches a ray from `start` to `end`. `slope` is the field's slope along it, as far as it is known.
 fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
     let fractal = is_fractal();
     let narrow = narrowness(ray);
-    let foot = select(frame.footprint, frame.footprint / sqrt(f32(max(frame.samples, 1u))), fractal);
+    let finer = min(f32(frame.size.y) / FINE_ROWS, 1.0);
+    let foot = frame.footprint * select(finer, 1.0 / sqrt(f32(max(frame.samples, 1u))), fractal);
     let share = select(LEAST_SHARE, 0.5, fractal);
     var t = start;
     var z = 0.0;
@@ -33,6 +39,7 @@ fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
     var side = 1.0;
     var guess = false;
     var falling = false;
+    var towards = false;
     var limit = 0.0;
     var progress = begin_steps(slope);
     // how often the place of the change of sign is still guessed, the place behind it and the value there
@@ -60,7 +67,7 @@ fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
         }
         let rounding = frame.rounding.x * to + frame.rounding.y;
         let radius = foot * (frame.pixel.x * to * narrow + frame.pixel.y);
-        let least = radius * share + rounding;
+        let least = radius * share + 4.0 * rounding;
         limit = radius + rounding;
         guess = guess && steps > 1u;
         var root = 0.0;
@@ -68,8 +75,9 @@ fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
             side = select(1.0, -1.0, next < 0.0);
             next *= side;
         } else {
-            let gap = z > r && z > r + next && z > least;
-            if (next < behind_surface(p) && (!gap || guess)) {
+            let gap = z > r && z > r + next && (guess || z > least);
+            let behind = next < behind_surface(p) || (next < 0.0 && r < 0.0);
+            if (behind && (!gap || guess)) {
                 r = max(r, 0.0);
                 inside = vec2f(to, next);
                 z = sign_change(t, r, inside) - t;
@@ -79,12 +87,13 @@ fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
             if (gap) {
                 // a gap between the spheres: back to the sphere itself
                 progress = failed(progress);
-                z = min(max(r, least), end - t);
+                z = min(max(r, select(4.0 * rounding, least, fractal)), end - t);
                 guess = false;
                 continue;
             }
             progress = passed(progress, z, r, next);
             falling = r > next;
+            towards = r - next > TOWARDS * z;
             root = next * z / max(r - next, 1e-30) * GUESS_BEYOND + least;
         }
         t = to;
@@ -95,8 +104,10 @@ fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
         if (t + max(r, 0.0) >= end) {
             return Found(false, t, r, side, steps);
         }
-        z = max(next_step(progress, r), least);
-        guess = !fractal && steps > 1u && falling && r < limit && root > z && root < GUESS_LONGEST * limit;
+        // steps that are longer than the radius are tested, and must be so long that they are
+        let step = next_step(progress, r);
+        z = max(select(step, r, !fractal && step < least), select(least, min(select(4.0, 64.0, r < 0.0) * rounding, least), towards && !fractal));
+        guess = !fractal && steps > 1u && falling && r >= 0.0 && r < limit && root > z && root < GUESS_LONGEST * limit;
         z = min(select(z, root, guess), end - t);
     }
     // out of steps: a surface only where the ray is within a pixel of it, and comes nearer

@@ -44,7 +44,7 @@ fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
         if (steps == 1u) {
             side = select(1.0, -1.0, next < 0.0);
             next *= side;
-        } else if (next < behind_surface(p)) {
+        } else if (next < behind_surface(p) || (next < 0.0 && r < 0.0)) {
             r = max(r, 0.0);
             inside = vec2f(to, next);
             z = sign_change(t, r, inside) - t;

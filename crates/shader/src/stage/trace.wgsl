@@ -51,9 +51,21 @@ fn trace_ray(pixel: vec2u, index: u32, ray: Ray, span: vec3f) -> Sample {
     }
     let point = ray.origin + ray.direction * t;
     let pixel_here = pixel_width(ray, t);
-    let uphill = gradient(point, pixel_here) * found.side;
-    let steepness = length(uphill);
-    let normal = select(-ray.direction, uphill / steepness, steepness > 0.0 && steepness < FAR);
+    // what is seen faces the eye: on an edge the gradient may be that of the face behind it, and that of the one before it is
+    // found a little nearer
+    var normal = -ray.direction;
+    for (var k = 0u; k < 2u; k++) {
+        let before = normal;
+        let uphill = gradient(point - ray.direction * (f32(k) * footprint(ray, t)), pixel_here) * found.side;
+        let steepness = length(uphill);
+        normal = select(-ray.direction, uphill / steepness, steepness > 0.0 && steepness < FAR);
+        if (dot(normal, ray.direction) <= 0.0) {
+            break;
+        }
+        if (k == 1u) {
+            normal = normalize(before - ray.direction * dot(before, ray.direction));
+        }
+    }
     let at = Surface(point, normal, found.side, 2.0 * max(abs(found.f), footprint(ray, t)), ray.direction);
     let marks = field_marks(point);
     counted[COUNT_MATERIAL] += 1u;

@@ -24,7 +24,7 @@ pub(super) struct Ending {
 }
 
 /// How much farther than its steps a ray is followed before it counts as one that hits nothing.
-const PATIENCE: u32 = 40;
+const PATIENCE: u32 = 400;
 
 impl Plain<'_> {
     /// Marches a ray from where it enters the scene's box.
@@ -53,23 +53,27 @@ impl Plain<'_> {
         let footprint = if fractal {
             1.0 / (self.samples() as f32).sqrt()
         } else {
-            1.0
+            self.view.fine
         };
         let share = if fractal { 0.5 } else { 1.0 / 16.0 };
         let rounding = |t: f32| self.view.rounding.at(t);
         let near = |t: f32| (self.view.near(t, narrow) - rounding(t)) * footprint + rounding(t);
-        let least = |t: f32| (near(t) - rounding(t)) * share + rounding(t);
+        let least = |t: f32| (near(t) - rounding(t)) * share + 4.0 * rounding(t);
         let behind = |t: f32| {
             let p = (o + d * t).abs();
             -0.5 * ROUNDING * (p.x + p.y + p.z)
         };
         let mut f = |t: f32| side * probe.value(o + d * t);
         let mut steady = Steady::new(self.settings.march);
-        let patience = if self.settings.hit_selection { PATIENCE } else { 1 };
+        let patience = if self.settings.hit_selection {
+            PATIENCE
+        } else {
+            1
+        };
         let limit = self.quality.max_steps.saturating_mul(patience);
         let (mut t, mut r) = (start, side * first);
-        // the step, and whether it is a guess of where the sign changes
-        let (mut z, mut guess) = (steady.step(r), false);
+        // the step, whether it is a guess of where the sign changes, whether it goes towards a surface
+        let (mut z, mut guess, mut towards) = (steady.step(r), false, false);
         let (mut found, mut lost) = (None, false);
         let mut arrived = fractal && r < near(t);
         while !arrived && t + r.max(0.0) < end {
@@ -77,28 +81,38 @@ impl Plain<'_> {
                 lost = true;
                 break;
             }
-            z = z.max(if steady.careful() { least(t) } else { 0.0 }).min(end - t);
+            let floor = match steady.careful() {
+                false => 0.0,
+                true if towards && !fractal && r < 0.0 => (64.0 * rounding(t)).min(least(t)),
+                true if towards && !fractal => 4.0 * rounding(t),
+                true => least(t),
+            };
+            z = z.max(floor).min(end - t);
             let next = f(t + z);
             steps += 1;
-            let crossed = next < behind(t + z);
-            let gap = steady.careful() && z > r && z > r + next && z > least(t + z);
+            let crossed = next < behind(t + z) || (next < 0.0 && r < 0.0);
+            let gap = steady.careful() && z > r && z > r + next && (guess || z > least(t + z));
             if crossed && (!gap || guess) {
                 found = Some([t, r.max(0.0), t + z, next]);
                 break;
             }
             if gap {
                 steady.fail();
-                (z, guess) = (r, false);
+                (z, guess, towards) = (r, false, true);
                 continue;
             }
             steady.pass(z, r, next);
-            let fall = r - next;
+            let (fall, z_taken) = (r - next, z);
             let root = next * z / fall.max(1e-30) * 1.1 + least(t + z);
             (t, r) = (t + z, next);
+            towards = fall > 0.02 * z_taken;
             z = steady.step(r);
+            if steady.careful() && !fractal && z < least(t) {
+                z = r;
+            }
             guess = steady.careful()
                 && !fractal
-                && r < near(t)
+                && (0.0..near(t)).contains(&r)
                 && fall > 0.0
                 && root > z.max(least(t))
                 && root < 64.0 * near(t);
@@ -111,7 +125,7 @@ impl Plain<'_> {
         if lost {
             // nobody knows: a surface only where the ray is within a pixel of it
             let slope = probe.gradient(o + d * t).length().max(1e-30);
-            arrived = r / slope < 2.0 * near(t);
+            arrived = r / slope < 2.0 * self.view.near(t, narrow);
         }
         let hit = match found {
             Some(t) => Some(Ending { t, f: 0.0, side }),
@@ -142,7 +156,16 @@ impl Plain<'_> {
             Normals::Central => sum(&CENTRAL),
             Normals::Samples18 => sum(&NEIGHBOURS_18),
             Normals::Samples26 => sum(&NEIGHBOURS_26),
-            Normals::Exact => probe.gradient(p),
+            Normals::Exact => {
+                let g = probe.gradient(p);
+                // on an edge the gradient may be that of the face behind it
+                let before = probe.gradient(p - d * self.view.near(t, self.narrow(p, d)));
+                match ((g * side).dot(d) > 0.0, (before * side).dot(d) > 0.0) {
+                    (false, _) => g,
+                    (true, false) => before,
+                    (true, true) => g - d * g.dot(d),
+                }
+            }
         };
         (g * side).try_normalize().unwrap_or(-d)
     }

@@ -138,6 +138,7 @@ fn relaxation_and_cones_save_evaluations() {
 fn rays_out_of_steps_take_their_best_candidate() {
     let mut scene = tomczak();
     scene.camera.eye.y = 1.9;
+    scene.lights.clear();
     scene.settings = Settings {
         max_steps: 6,
         prepass: false,
@@ -147,6 +148,7 @@ fn rays_out_of_steps_take_their_best_candidate() {
     };
     for hit_selection in [true, false] {
         scene.settings.hit_selection = hit_selection;
-        same(&scene, &stream(&scene), &reference(&scene), "few steps");
+        let what = format!("few steps, {hit_selection}");
+        same(&scene, &stream(&scene), &reference(&scene), &what);
     }
 }
