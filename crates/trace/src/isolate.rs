@@ -50,8 +50,8 @@ pub(crate) enum Crossing {
     Unknown(f32),
 }
 
-/// Evaluations in double precision of parameters in single precision are off by about this share of the coordinates.
-const ROUNDING: f64 = 1e-10;
+/// Evaluations in double precision are off by about this share of the coordinates.
+const ROUNDING: f64 = 1e-15;
 /// Instructions that a search may take.
 const WORK: usize = 400_000;
 

@@ -308,6 +308,37 @@ where
             d: self.d,
         }
     }
+    #[inline(always)]
+    fn held(self, lo: R::Scalar, hi: R::Scalar) -> Self {
+        let held = self.max(lo).min(hi);
+        if R::SHOWN {
+            Dual {
+                v: held.v,
+                d: self.d,
+            }
+        } else {
+            held
+        }
+    }
+    #[inline(always)]
+    fn continued(beyond: Self, inner: Self, slope: R::Scalar, value: Self) -> Self {
+        if !R::SHOWN {
+            return value;
+        }
+        // the distance to the surface from the box, then from here: value over the length of the gradient is to be that
+        let steepness = R::norm(inner.d).max(1e-12);
+        let from_box = inner.v / steepness;
+        let distance = R::norm([beyond.v, from_box]).max(1e-30);
+        let way = plus(
+            times(beyond.d, beyond.v * slope * slope),
+            times(inner.d, inner.v),
+        );
+        let length = value.v / distance;
+        Dual {
+            v: value.v,
+            d: times(way, length / R::norm(way).max(1e-30)),
+        }
+    }
 
     #[inline(always)]
     fn sqrt(self) -> Self {

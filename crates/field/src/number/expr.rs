@@ -272,6 +272,7 @@ impl<'r> State<Expr<'r>> for Expr<'r> {
 }
 
 impl<'r> Real for Expr<'r> {
+    const SHOWN: bool = true;
     type Base = Self;
     type Scalar = Self;
     type Store = &'r Recorder;

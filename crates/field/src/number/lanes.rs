@@ -120,6 +120,7 @@ impl<S: Simd> State<Lanes<S>> for Lanes<S> {
 }
 
 impl<S: Simd> Real for Lanes<S> {
+    const SHOWN: bool = true;
     type Base = Self;
     type Scalar = f32;
     type Store = [f32];

@@ -94,6 +94,7 @@ macro_rules! real {
         }
 
         impl Real for $t {
+            const SHOWN: bool = true;
             type Base = $t;
             type Scalar = $t;
             type Store = [f32];

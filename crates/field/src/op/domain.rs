@@ -35,11 +35,17 @@ impl Warp for Clamp {
     #[inline(always)]
     fn warp<R: Real>(p: Vec3<R>, a: Args<'_, R>) -> Vec3<R> {
         v3(
-            p.x.max(a.get(0)).min(a.get(3)),
-            p.y.max(a.get(1)).min(a.get(4)),
-            p.z.max(a.get(2)).min(a.get(5)),
+            p.x.held(a.get(0), a.get(3)),
+            p.y.held(a.get(1), a.get(4)),
+            p.z.held(a.get(2), a.get(5)),
         )
     }
+}
+
+/// Away from a box (smallest corner, largest corner) along an axis.
+#[inline(always)]
+fn away<R: Real>(x: R, a: Args<'_, R>, k: usize) -> R {
+    x - x.max(a.get(k)).min(a.get(k + 3))
 }
 
 /// `a d`
@@ -68,19 +74,17 @@ pub struct Continue;
 impl Change for Continue {
     #[inline(always)]
     fn change<R: Real>(d: R, p: Vec3<R>, a: Args<'_, R>) -> R {
-        let c = Clamp::warp(p, a);
-        let beyond = R::norm([p.x - c.x, p.y - c.y, p.z - c.z]) * a.get(6);
+        let apart = R::norm([away(p.x, a, 0), away(p.y, a, 1), away(p.z, a, 2)]);
+        let beyond = apart * a.get(6);
         let x = (p.x - a.get(0)).min(-(p.x - a.get(3)));
         let y = (p.y - a.get(1)).min(-(p.y - a.get(4)));
         let z = (p.z - a.get(2)).min(-(p.z - a.get(5)));
         let depth = x.min(y).min(z) * a.get(6);
         // a comparison, because the minimum with what is not a number is either
         let d = R::select(d.below(FAR), d, d.lit(FAR));
-        R::select(
-            beyond.above(0.0),
-            length2(beyond, d.max(0.0)),
-            d.max(-depth),
-        )
+        let outer = d.max(0.0);
+        let continued = R::continued(apart, outer, a.get(6), length2(beyond, outer));
+        R::select(beyond.above(0.0), continued, d.max(-depth))
     }
 }
 
