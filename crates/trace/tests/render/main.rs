@@ -6,5 +6,6 @@ mod compare;
 mod marchers;
 mod methods;
 mod mutants;
+mod openness;
 mod robust;
 mod scenes;
