@@ -223,7 +223,7 @@ impl Default for Settings {
             shading: Shading::Phong,
             occlusion: Occlusion::Cones {
                 reach: None,
-                steps: 12,
+                steps: 14,
             },
             antialias: Antialias::Supersample {
                 samples: 4,

@@ -246,7 +246,11 @@ fn reach_of_occlusion() {
             let text = format!("show(sphere())\nrender(ao = {method}({reach}))");
             let scene = load("reach.star", &text, Language::Starlark).scene;
             let json = round_trip(&scene);
-            assert_eq!(json.contains("\"reach\": 0.25"), written, "{method}: {json}");
+            assert_eq!(
+                json.contains("\"reach\": 0.25"),
+                written,
+                "{method}: {json}"
+            );
             assert_eq!(json.contains("\"reach\""), written, "{method}: {json}");
             let again = load("reach.json", &json, Language::Json).scene;
             assert_eq!(again.settings.occlusion, scene.settings.occlusion);

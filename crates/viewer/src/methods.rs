@@ -174,7 +174,7 @@ const STEP: &str = "Distance between samples, scene units.";
 const REACH: &str = "How far they look, scene units; at the end of the slider without limit.";
 
 choice! { Occlusion {
-    Occlusion::Cones { .. } => Occlusion::Cones { reach: None, steps: 12 }, "Cones", "distance field occlusion, 11 cones",
+    Occlusion::Cones { .. } => Occlusion::Cones { reach: None, steps: 14 }, "Cones", "distance field occlusion, 11 cones",
         "Eleven cones, each as open as the field leaves its axis clear.";
     Occlusion::Quilez { .. } => Occlusion::Quilez { steps: 5, step: 0.1, scale: 1.0 }, "Quilez", "Tomczak 2012, 3.4",
         "Samples along the normal with halving weights.";

@@ -199,7 +199,7 @@ fn methods() -> Vec<(String, Scene)> {
         Occlusion::Upward { scale },
         Occlusion::Cones {
             reach: None,
-            steps: 12,
+            steps: 14,
         },
         Occlusion::Cones { reach, steps: 6 },
         Occlusion::Hemisphere { rays: 16, reach },

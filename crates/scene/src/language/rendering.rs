@@ -274,9 +274,9 @@ pub(crate) const ALL: &[Native] = &[
     occlusion!(
         "cones",
         "Eleven cones, each as open as its axis is clear.",
-        [REACH, slot("steps", "12", "Samples along a cone, at most.")],
+        [REACH, slot("steps", "14", "Samples along a cone, at most.")],
         |c| {
-            let (reach, steps) = (reach(c)?, samples(c, "steps", 12)?);
+            let (reach, steps) = (reach(c)?, samples(c, "steps", 14)?);
             occlusion(c, Occlusion::Cones { reach, steps })
         }
     ),

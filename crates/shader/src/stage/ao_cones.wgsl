@@ -4,20 +4,20 @@
 const CONES: u32 = 11u;
 /// The first of them are the ring around the normal, the others that along the horizon.
 const CONES_HIGH: u32 = 4u;
-// The numbers of the two rings: cosines to the normal, shares of the sky, sines of the clearance that is wholly open, widths of
-// an edge.
-const CONE_COSINES: vec2f = vec2f(0.96, 0.555);
-const CONE_SHARES: vec2f = vec2f(0.1125, 0.078571429);
-const CONE_FULL: vec2f = vec2f(0.585, 0.53);
-const CONE_WIDTH: vec2f = vec2f(0.925, 0.575);
+// The numbers of the two rings: cosines to the normal, shares of the sky, widths of an edge.
+const CONE_COSINES: vec2f = vec2f(0.88, 0.49);
+const CONE_SHARES: vec2f = vec2f(0.13565, 0.06534286);
+const CONE_WIDTH: vec2f = vec2f(1.075, 0.9);
+/// Sine of the clearance that is wholly open.
+const CONE_FULL: f32 = 0.465;
 /// How far, measured as the distances between directions are, wholly open is.
-const CONE_EXTENT: f32 = 0.58;
+const CONE_EXTENT: f32 = 0.43;
 /// Near an edge, up to this share of its width, an open cone counts on its neighbours as a blocked one does.
 const CONE_CLOSENESS: f32 = 0.2;
 /// Sine of the clearance that is none.
-const CONE_BLOCKED: f32 = 0.03;
+const CONE_BLOCKED: f32 = 0.05;
 /// Steps are as short as an edge at this share of the clearance found so far asks for.
-const CONE_CARE: f32 = 0.4;
+const CONE_CARE: f32 = 0.45;
 /// A cone ends where the scene leaves it this share of what is wholly open.
 const CONE_SURE: f32 = 0.75;
 /// The first sample is this many offsets from the origin.
@@ -92,15 +92,22 @@ fn touching_ball(at: Surface, origin: vec3f, far: f32) -> f32 {
     return large;
 }
 
-/// Sine of the largest clear angle around a ray from `start` to `end`, at most `full`; 0 if something is hit.
-fn cone_clearance(at: Surface, ray: Ray, start: f32, end: f32, cosine: f32, full: f32, steps: u32) -> f32 {
+/// Sine of the largest clear angle around a ray from `start` to `end`, at most `CONE_FULL`; 0 if something is hit.
+fn cone_clearance(at: Surface, ray: Ray, start: f32, end: f32, cosine: f32, steps: u32) -> f32 {
     var t = start;
     var stride = 0.0;
     var before = 0.0;
     var slope = cosine;
-    var least = full;
+    var least = CONE_FULL;
     for (var k = 0u; k < steps; k++) {
         let f = around(at, ray.origin + ray.direction * t);
+        // where the balls around two samples do not touch there may be something between them: back to where they do
+        if (stride > before && before + f < stride) {
+            t += before - stride;
+            stride = before;
+            slope = -1.0;
+            continue;
+        }
         if (!(f > CONE_BLOCKED * t)) {
             return 0.0;
         }
@@ -132,12 +139,11 @@ fn ao_cones(at: Surface, how: Occluder) -> Openness {
     for (var k = 0u; k < CONES; k++) {
         let ray = Ray(origin, turn_cone(at.normal, cone_direction(k)));
         let cosine = of_ring(k, CONE_COSINES);
-        let full = of_ring(k, CONE_FULL);
         let start = max(at.offset * CONE_START, ball * (CONE_FREE * cosine));
-        let end = max(min(leave(ray, CONE_SURE * full, at.offset), far), start);
-        let sine = cone_clearance(at, ray, start, end, cosine, full, u32(how.count));
+        let end = max(min(leave(ray, CONE_SURE * CONE_FULL, at.offset), far), start);
+        let sine = cone_clearance(at, ray, start, end, cosine, u32(how.count));
         to[k] = ray.direction;
-        clear[k] = CONE_EXTENT * clamp((sine - CONE_BLOCKED) / (full - CONE_BLOCKED), 0.0, 1.0);
+        clear[k] = CONE_EXTENT * clamp((sine - CONE_BLOCKED) / (CONE_FULL - CONE_BLOCKED), 0.0, 1.0);
     }
     var open = 0.0;
     var bent = at.normal * 1e-3;

@@ -111,15 +111,15 @@ impl Plain<'_> {
         }
         let to = directions().map(|w| glam(turn(field(at.normal), w)));
         let clear: [f32; DIRECTIONS] = std::array::from_fn(|k| {
-            let (full, cosine) = (FULL[ring(k)], COSINES[ring(k)]);
+            let cosine = COSINES[ring(k)];
             let t = (at.offset * START).max(ball * FREE * cosine);
             let end = self
-                .leave(origin, to[k], SURE * full, at.offset)
+                .leave(origin, to[k], SURE * FULL, at.offset)
                 .min(far)
                 .max(t);
             let mut along = |t: f32| f(origin + to[k] * t);
-            let sine = clearance(&mut along, t, end, cosine, full, steps);
-            EXTENT * ((sine - BLOCKED) / (full - BLOCKED)).clamp(0.0, 1.0)
+            let sine = clearance(&mut along, t, end, cosine, steps);
+            EXTENT * ((sine - BLOCKED) / (FULL - BLOCKED)).clamp(0.0, 1.0)
         });
         let (distances, weights) = (distances(), weights());
         let (mut open, mut bent) = (0.0, at.normal * 1e-3);
@@ -162,19 +162,28 @@ fn touching(f: &mut impl FnMut(Vec3) -> f32, origin: Vec3, at: &Surface, far: f3
     large
 }
 
-/// Sine of the largest clear angle around a ray from `start` to `end`, at most `full`; 0 if something is hit.
+/// Sine of the largest clear angle around a ray from `start` to `end`, at most `FULL`; 0 if something is hit.
 fn clearance(
     f: &mut impl FnMut(f32) -> f32,
     start: f32,
     end: f32,
     mut slope: f32,
-    full: f32,
     steps: u32,
 ) -> f32 {
-    let (mut t, mut least) = (start, full);
+    let (mut t, mut least) = (start, FULL);
     let mut last: Option<(f32, f32)> = None;
     for _ in 0..steps.max(1) {
         let value = f(t);
+        // where the balls around two samples do not touch there may be something between them: back to where they do
+        if let Some((step, before)) = last
+            && step > before
+            && before + value < step
+        {
+            t += before - step;
+            last = Some((before, before));
+            slope = -1.0;
+            continue;
+        }
         if value <= BLOCKED * t {
             return 0.0;
         }

@@ -65,7 +65,7 @@ fn occlusion() {
         Occlusion::Upward { scale: 0.5 },
         Occlusion::Cones {
             reach: None,
-            steps: 12,
+            steps: 14,
         },
         Occlusion::Cones {
             reach: Some(0.5),

@@ -17,7 +17,7 @@ use zeroset_trace::CpuRenderer;
 
 const CONES: Occlusion = Occlusion::Cones {
     reach: None,
-    steps: 12,
+    steps: 14,
 };
 
 /// A point of a surface that a pixel shows.

@@ -32,7 +32,7 @@ fn threads_do_not_change_the_picture() {
             for occlusion in [
                 Occlusion::Cones {
                     reach: None,
-                    steps: 12,
+                    steps: 14,
                 },
                 Occlusion::Hemisphere {
                     rays: 4,
@@ -219,7 +219,7 @@ fn a_bare_plane_is_wholly_open() {
         scene.objects.push(object(shape("plane", &[]), 0));
         scene.settings.occlusion = Occlusion::Cones {
             reach: None,
-            steps: 12,
+            steps: 14,
         };
         for film in [stream(&scene), reference(&scene)] {
             let pixels = film
