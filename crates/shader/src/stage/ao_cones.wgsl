@@ -99,8 +99,12 @@ fn cone_clearance(at: Surface, ray: Ray, start: f32, end: f32, cosine: f32, step
     var before = 0.0;
     var slope = cosine;
     var least = CONE_FULL;
+    var rise = 1.0;
     for (var k = 0u; k < steps; k++) {
         let f = around(at, ray.origin + ray.direction * t);
+        if (stride > 0.0) {
+            rise = clamp((f - before) / max(stride, 1e-20), -1.0, 1.0);
+        }
         // where the balls around two samples do not touch there may be something between them: back to where they do
         if (stride > before && before + f < stride) {
             t += before - stride;
@@ -113,10 +117,10 @@ fn cone_clearance(at: Surface, ray: Ray, start: f32, end: f32, cosine: f32, step
         }
         least = min(least, f / t);
         if (t >= end) {
-            break;
+            return least;
         }
         if (stride > 0.0) {
-            slope = mix(slope, clamp((f - before) / max(stride, 1e-20), -1.0, 1.0), CONE_SMOOTHING);
+            slope = mix(slope, rise, CONE_SMOOTHING);
         }
         slope = min(slope, CONE_STEEPEST);
         let edge = CONE_CARE * least;
@@ -124,7 +128,8 @@ fn cone_clearance(at: Surface, ray: Ray, start: f32, end: f32, cosine: f32, step
         before = f;
         t += stride;
     }
-    return least;
+    // as it went last: then f / t tends to the slope
+    return min(least, max(rise, 0.0));
 }
 
 fn ao_cones(at: Surface, how: Occluder) -> Openness {

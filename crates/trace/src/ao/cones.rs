@@ -373,7 +373,10 @@ fn advance<S: Simd>(s: S, steps: u32, iteration: u32, q: &mut Scratch) {
         let on = Chosen::new(live & more);
         if on.count < S::f32s::LEN {
             let done = Chosen::new(live & !more);
-            let found = Lanes::select(clear, least, splat(s, 0.0));
+            // a cone that had all its steps goes on as it went last: then f / t tends to the slope
+            let ended = !gap & !t.below(end);
+            let found = Lanes::select(ended, least, least.min(rise.max(0.0)));
+            let found = Lanes::select(clear, found, splat(s, 0.0));
             done.put(found, &mut ended.light, ended.count);
             done.put_words(word, &mut ended.word, ended.count);
             ended.count += done.count;

@@ -172,27 +172,27 @@ fn clearance(
 ) -> f32 {
     let (mut t, mut least) = (start, FULL);
     let mut last: Option<(f32, f32)> = None;
+    let mut rise = 1.0f32;
     for _ in 0..steps.max(1) {
         let value = f(t);
-        // where the balls around two samples do not touch there may be something between them: back to where they do
-        if let Some((step, before)) = last
-            && step > before
-            && before + value < step
-        {
-            t += before - step;
-            last = Some((before, before));
-            slope = -1.0;
-            continue;
+        if let Some((step, before)) = last {
+            rise = ((value - before) / step.max(1e-20)).clamp(-1.0, 1.0);
+            // where the balls around two samples do not touch there may be something between them: back to where they do
+            if step > before && before + value < step {
+                t += before - step;
+                last = Some((before, before));
+                slope = -1.0;
+                continue;
+            }
         }
         if value <= BLOCKED * t {
             return 0.0;
         }
         least = least.min(value / t);
         if t >= end {
-            break;
+            return least;
         }
-        if let Some((step, before)) = last {
-            let rise = ((value - before) / step.max(1e-20)).clamp(-1.0, 1.0);
+        if last.is_some() {
             slope += BETA * (rise - slope);
         }
         slope = slope.min(STEEPEST);
@@ -202,5 +202,6 @@ fn clearance(
         last = Some((step, value));
         t += step;
     }
-    least
+    // as it went last: then f / t tends to the slope
+    least.min(rise.max(0.0))
 }
