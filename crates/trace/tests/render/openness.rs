@@ -301,9 +301,9 @@ fn corners_and_rooms() {
     println!("three walls: {:?} worst {}", error(&pairs), worst(&pairs));
     assert!(worst(&pairs) < 0.08);
     for room in [
-        "box(4).shell(0.1)",
-        "sphere(3).shell(0.05)",
-        "box((6, 4, 5)).shell(0.001)",
+        "box(4).onion(0.1)",
+        "sphere(3).onion(0.05)",
+        "box((6, 4, 5)).onion(0.02)",
     ] {
         let text = format!(
             "show({room})\ncamera(eye = (0.3, 0.2, 0.1), target = (1, 0.1, 0.4), fov = 90)"
