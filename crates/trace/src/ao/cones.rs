@@ -414,15 +414,12 @@ fn combine<S: Simd>(s: S, to: &[[f32; 3]; DIRECTIONS], range: Range<usize>, q: &
         let normal = load3(s, &q.hits.normal, i);
         let mut open = splat(s, 0.0);
         let mut bent = normal * 1e-3;
-        for k in 0..DIRECTIONS {
+        for (k, (&w, apart)) in to.iter().zip(&distances).enumerate() {
             let mut behind = splat(s, -WIDTH[0]);
-            for j in 0..DIRECTIONS {
-                let left = Lanes::select(
-                    clear[j].above(0.0),
-                    clear[j] - distances[k][j],
-                    splat(s, -WIDTH[0]),
-                );
+            for (j, (&other, &distance)) in clear.iter().zip(apart).enumerate() {
                 if j != k {
+                    let left = other - distance;
+                    let left = Lanes::select(other.above(0.0), left, splat(s, -WIDTH[0]));
                     behind = behind.max(left);
                 }
             }
@@ -431,7 +428,7 @@ fn combine<S: Simd>(s: S, to: &[[f32; 3]; DIRECTIONS], range: Range<usize>, q: &
             let close = (before * (1.0 / CLOSENESS)).one_minus().max(0.0);
             let share = seen(before + behind * close) * weights[ring(k)];
             open = open + share;
-            bent = along(bent, turn(normal, to[k]), share);
+            bent = along(bent, turn(normal, w), share);
         }
         // with all cones open the sum is 1 up to rounding
         store((open * 1.000_002).min(1.0), &mut q.hits.open, i);

@@ -123,10 +123,11 @@ impl Plain<'_> {
         });
         let (distances, weights) = (distances(), weights());
         let (mut open, mut bent) = (0.0, at.normal * 1e-3);
-        for k in 0..DIRECTIONS {
-            let left = (0..DIRECTIONS).filter(|&j| j != k && clear[j] > 0.0);
-            let behind = left
-                .map(|j| clear[j] - distances[k][j])
+        for (k, (&w, apart)) in to.iter().zip(&distances).enumerate() {
+            let others = clear.iter().zip(apart).enumerate();
+            let behind = others
+                .filter(|(j, (other, _))| *j != k && **other > 0.0)
+                .map(|(_, (other, distance))| other - distance)
                 .fold(-WIDTH[0], f32::max)
                 .min(0.0)
                 / WIDTH[0];
@@ -134,7 +135,7 @@ impl Plain<'_> {
             let close = (1.0 - before / CLOSENESS).max(0.0);
             let share = seen(before + behind * close) * weights[ring(k)];
             open += share;
-            bent += to[k] * share;
+            bent += w * share;
         }
         ((open * 1.000_002).min(1.0), bent.normalize_or(at.normal))
     }
