@@ -12,6 +12,7 @@
 //! them go, and end where the scene does.
 
 use crate::march::{ITERATIONS, ORDINAL, ORDINAL_BITS};
+use crate::marcher::Rough;
 use crate::normal::sample;
 use crate::simd::{
     Chosen, INSIDE, along, first_lanes, load, load_words, load3, sided, splat, store, store3,
@@ -374,8 +375,8 @@ fn advance<S: Simd>(s: S, steps: u32, iteration: u32, q: &mut Scratch) {
         if on.count < S::f32s::LEN {
             let done = Chosen::new(live & !more);
             // a cone that had all its steps goes on as it went last: then f / t tends to the slope
-            let ended = !gap & !t.below(end);
-            let found = Lanes::select(ended, least, least.min(rise.max(0.0)));
+            let at_end = !gap & !t.below(end);
+            let found = Lanes::select(at_end, least, least.min(rise.max(0.0)));
             let found = Lanes::select(clear, found, splat(s, 0.0));
             done.put(found, &mut ended.light, ended.count);
             done.put_words(word, &mut ended.word, ended.count);

@@ -9,7 +9,7 @@ pub(crate) use samples::EVANS;
 use crate::shadow::Hard;
 use crate::simd::{load, load_words, sided};
 use crate::tile::{Scratch, Solid};
-use fearless_simd::{Simd, prelude::*};
+use fearless_simd::Simd;
 use std::ops::Range;
 use zeroset_field::eval::BATCH;
 use zeroset_field::number::Lanes;
