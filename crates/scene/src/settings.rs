@@ -108,26 +108,29 @@ pub enum Occlusion {
         /// Strength.
         scale: f32,
     },
-    /// Nine cones over the hemisphere (the default).
+    /// Eleven cones, each as open as the field leaves its axis clear (the default).
     Cones {
-        /// How far a cone looks.
-        reach: f32,
-        /// Samples along a cone.
+        /// How far they look; to the end of the scene where it is not given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        reach: Option<f32>,
+        /// Samples along a cone, at most.
         steps: u32,
     },
     /// Cosine-weighted sampled visibility: the reference (Tomczak 2012, equation 3.18).
     Hemisphere {
         /// Number of rays.
         rays: u32,
-        /// How far they look.
-        reach: f32,
+        /// How far they look; to the end of the scene where it is not given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        reach: Option<f32>,
     },
     /// As `hemisphere`, with near occluders counting more: `1 - exp(-tau d)` (Tomczak 2012, equations 3.19 to 3.24).
     Obscurance {
         /// Number of rays.
         rays: u32,
-        /// How far they look.
-        reach: f32,
+        /// How far they look; to the end of the scene where it is not given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        reach: Option<f32>,
         /// Falloff over distance, > 0.
         tau: f32,
     },
@@ -219,8 +222,8 @@ impl Default for Settings {
             normals: Normals::Exact,
             shading: Shading::Phong,
             occlusion: Occlusion::Cones {
-                reach: 1.5,
-                steps: 5,
+                reach: None,
+                steps: 14,
             },
             antialias: Antialias::Supersample {
                 samples: 4,

@@ -237,3 +237,23 @@ fn what_is_left_out() {
     };
     assert_eq!(params, &[0.5]);
 }
+
+/// Occlusion sees the whole sky unless a reach is given, and both forms of a scene say so.
+#[test]
+fn reach_of_occlusion() {
+    for method in ["cones", "hemisphere", "obscurance"] {
+        for (reach, written) in [("", false), ("reach = 0.25", true)] {
+            let text = format!("show(sphere())\nrender(ao = {method}({reach}))");
+            let scene = load("reach.star", &text, Language::Starlark).scene;
+            let json = round_trip(&scene);
+            assert_eq!(
+                json.contains("\"reach\": 0.25"),
+                written,
+                "{method}: {json}"
+            );
+            assert_eq!(json.contains("\"reach\""), written, "{method}: {json}");
+            let again = load("reach.json", &json, Language::Json).scene;
+            assert_eq!(again.settings.occlusion, scene.settings.occlusion);
+        }
+    }
+}

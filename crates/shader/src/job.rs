@@ -310,6 +310,9 @@ fn light_row(light: &zeroset_scene::light::Light) -> Light {
     }
 }
 
+/// The reach of occlusion that has none. Shaders have no infinity.
+const UNLIMITED: f32 = 3.0e38;
+
 fn occluder(method: Occlusion) -> Occluder {
     let kind = crate::source::occlusion_kind(&method) as f32;
     let of = |count: u32, reach: f32, scale: f32, bend: f32| Occluder {
@@ -320,6 +323,7 @@ fn occluder(method: Occlusion) -> Occluder {
         bend,
         ..Occluder::default()
     };
+    let far = |reach: Option<f32>| reach.unwrap_or(UNLIMITED);
     match method {
         Occlusion::None => of(0, 0.0, 0.0, 0.0),
         Occlusion::Quilez { steps, step, scale } => of(steps, step, scale, 0.0),
@@ -331,9 +335,9 @@ fn occluder(method: Occlusion) -> Occluder {
         } => of(steps, step, scale, bend),
         Occlusion::Evans { scale, step, bend } => of(4, step, scale, bend),
         Occlusion::Upward { scale } => of(0, 0.0, scale, 0.0),
-        Occlusion::Cones { reach, steps } => of(steps, reach, 0.0, 0.0),
-        Occlusion::Hemisphere { rays, reach } => of(rays, reach, 0.0, 0.0),
-        Occlusion::Obscurance { rays, reach, tau } => of(rays, reach, tau, 0.0),
+        Occlusion::Cones { reach, steps } => of(steps, far(reach), 0.0, 0.0),
+        Occlusion::Hemisphere { rays, reach } => of(rays, far(reach), 0.0, 0.0),
+        Occlusion::Obscurance { rays, reach, tau } => of(rays, far(reach), tau, 0.0),
     }
 }
 

@@ -109,7 +109,7 @@ fn every_method_has_a_valid_shader() {
         Shadow::Soft { sharpness: 8.0 },
         Shadow::SoftClosest { sharpness: 8.0 },
     ];
-    let (step, scale, bend, reach) = (0.1, 1.0, 0.1, 1.0);
+    let (step, scale, bend, reach) = (0.1, 1.0, 0.1, Some(1.0));
     let occlusions = [
         Occlusion::None,
         Occlusion::Quilez {

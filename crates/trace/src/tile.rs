@@ -104,7 +104,7 @@ pub(crate) struct Beams {
     pub(crate) z: Row,
     pub(crate) r: Row,
     pub(crate) m: Row,
-    /// What is left of the light (soft shadows) or the value that counts as dark (hard ones).
+    /// What is left of the light (soft shadows), the value that counts as dark (hard ones), or the clearance (occlusion).
     pub(crate) light: Row,
     /// Steps are never shorter.
     pub(crate) least: Row,
@@ -211,6 +211,8 @@ pub(crate) struct Scratch {
     pub(crate) exhausted: Vec<(u32, f32)>,
     /// Random numbers of the hits.
     pub(crate) scramble: [Vec<u32>; 2],
+    /// Sines of the clearances of the occlusion's cones.
+    pub(crate) clearance: [Box<Sheet>; crate::ao::cones::DIRECTIONS],
     pub(crate) planes: Planes,
     pub(crate) counts: Evaluations,
 }
@@ -288,6 +290,7 @@ impl Scratch {
             steps: Sheet::boxed(),
             exhausted: Vec::with_capacity(WIDTH * HEIGHT),
             scramble: [vec![0; TILE_RAYS + SLACK], vec![0; TILE_RAYS + SLACK]],
+            clearance: std::array::from_fn(|_| Sheet::boxed()),
             planes: Planes::new(),
             counts: Evaluations::default(),
         }

@@ -39,6 +39,8 @@ pub enum Number<'a> {
     Real(&'a mut f32),
     /// A whole number.
     Whole(&'a mut u32),
+    /// A number that there may be none of: the end of the slider stands for no limit.
+    Limit(&'a mut Option<f32>),
 }
 
 /// A choice among methods.
@@ -169,11 +171,11 @@ choice! { Shadow {
 } }
 
 const STEP: &str = "Distance between samples, scene units.";
-const REACH: &str = "How far they look, scene units.";
+const REACH: &str = "How far they look, scene units; at the end of the slider without limit.";
 
 choice! { Occlusion {
-    Occlusion::Cones { .. } => Occlusion::Cones { reach: 1.5, steps: 5 }, "Cones", "distance field occlusion, 9 cones",
-        "Nine cones over the hemisphere, each as open as its narrowest place.";
+    Occlusion::Cones { .. } => Occlusion::Cones { reach: None, steps: 14 }, "Cones", "distance field occlusion, 11 cones",
+        "Eleven cones, each as open as the field leaves its axis clear.";
     Occlusion::Quilez { .. } => Occlusion::Quilez { steps: 5, step: 0.1, scale: 1.0 }, "Quilez", "Tomczak 2012, 3.4",
         "Samples along the normal with halving weights.";
     Occlusion::Bent { .. } => Occlusion::Bent { steps: 5, step: 0.1, scale: 0.5, bend: 0.2 }, "Bent", "Tomczak 2012, 3.7",
@@ -182,9 +184,9 @@ choice! { Occlusion {
         "Weighted samples at doubling distances, under an exponential.";
     Occlusion::Upward { .. } => Occlusion::Upward { scale: 0.5 }, "Upward", "Tomczak 2012, 4.3",
         "From the slope of the surface alone.";
-    Occlusion::Hemisphere { .. } => Occlusion::Hemisphere { rays: 64, reach: 1.5 }, "Hemisphere", "Tomczak 2012, 3.18",
+    Occlusion::Hemisphere { .. } => Occlusion::Hemisphere { rays: 64, reach: None }, "Hemisphere", "Tomczak 2012, 3.18",
         "Sampled visibility of the hemisphere: the reference.";
-    Occlusion::Obscurance { .. } => Occlusion::Obscurance { rays: 64, reach: 1.5, tau: 2.0 }, "Obscurance",
+    Occlusion::Obscurance { .. } => Occlusion::Obscurance { rays: 64, reach: None, tau: 2.0 }, "Obscurance",
         "Iones 2003; Tomczak 2012, 3.19", "As hemisphere, near things counting more.";
     Occlusion::None => Occlusion::None, "None", "no samples",
         "The sky reaches every surface.";
@@ -238,8 +240,14 @@ fn strength(scale: &mut f32) -> Dial<'_> {
     )
 }
 
-fn far(reach: &mut f32) -> Dial<'_> {
-    ratio("Reach", REACH, (0.05, 20.0), reach)
+fn far(reach: &mut Option<f32>) -> Dial<'_> {
+    Dial {
+        name: "Reach",
+        about: REACH,
+        range: (0.001, 1000.0),
+        is_logarithmic: true,
+        number: Number::Limit(reach),
+    }
 }
 
 fn many(rays: &mut u32) -> Dial<'_> {
@@ -318,6 +326,7 @@ mod tests {
                 let value = match dial.number {
                     Number::Real(x) => *x,
                     Number::Whole(n) => *n as f32,
+                    Number::Limit(x) => x.unwrap_or(dial.range.1),
                 };
                 assert!(
                     dial.range.0 <= value && value <= dial.range.1,

@@ -79,6 +79,23 @@ pub(crate) fn dial(ui: &mut Ui, dial: Dial<'_>) -> bool {
     let slider = match dial.number {
         Number::Real(x) => Slider::new(x, low..=high).max_decimals(3),
         Number::Whole(n) => Slider::new(n, low as u32..=high as u32),
+        Number::Limit(limit) => {
+            let mut x = limit.unwrap_or(high);
+            let slider = Slider::new(&mut x, low..=high)
+                .logarithmic(dial.is_logarithmic)
+                .custom_formatter(move |x, _| {
+                    if x >= f64::from(high) {
+                        "unlimited".to_owned()
+                    } else {
+                        format!("{x:.3}")
+                    }
+                });
+            let changed = slide(ui, dial.name, dial.about, slider).changed();
+            if changed {
+                *limit = (x < high).then_some(x);
+            }
+            return changed;
+        }
     };
     let slider = slider.logarithmic(dial.is_logarithmic);
     slide(ui, dial.name, dial.about, slider).changed()

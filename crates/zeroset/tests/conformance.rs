@@ -185,7 +185,7 @@ fn methods() -> Vec<(String, Scene)> {
     ] {
         with(&|s| s.lights.iter_mut().for_each(|l| l.shadow = shadow));
     }
-    let (step, scale, bend, reach) = (0.12, 1.2, 0.1, 1.0);
+    let (step, scale, bend, reach) = (0.12, 1.2, 0.1, Some(1.0));
     for occlusion in [
         Occlusion::None,
         Occlusion::Quilez {
@@ -201,7 +201,16 @@ fn methods() -> Vec<(String, Scene)> {
         },
         Occlusion::Evans { scale, step, bend },
         Occlusion::Upward { scale },
+        Occlusion::Cones {
+            reach: None,
+            steps: 14,
+        },
+        Occlusion::Cones { reach, steps: 6 },
         Occlusion::Hemisphere { rays: 16, reach },
+        Occlusion::Hemisphere {
+            rays: 16,
+            reach: None,
+        },
         Occlusion::Obscurance {
             rays: 16,
             reach,

@@ -126,6 +126,7 @@ pub(super) fn sky(sky: &Sky) -> Read<()> {
 pub(super) fn occlusion(occlusion: &Occlusion, limits: &Limits) -> Read<()> {
     let most = limits.samples.min(1 << 20) as u32;
     let length = |name: &str, x: f32| number(name, x, 1e-6, 1e6);
+    let far = |reach: Option<f32>| reach.map_or(Ok(()), |x| length("reach", x));
     let strength = |x: f32| number("scale", x, 0.0, 1000.0);
     let bend = |x: f32| number("bend", x, 0.0, 10.0);
     match *occlusion {
@@ -157,16 +158,16 @@ pub(super) fn occlusion(occlusion: &Occlusion, limits: &Limits) -> Read<()> {
         }
         Occlusion::Upward { scale } => strength(scale),
         Occlusion::Cones { reach, steps } => {
-            length("reach", reach)?;
+            far(reach)?;
             count("steps", steps, 1, most)
         }
         Occlusion::Hemisphere { rays, reach } => {
             count("rays", rays, 1, most)?;
-            length("reach", reach)
+            far(reach)
         }
         Occlusion::Obscurance { rays, reach, tau } => {
             count("rays", rays, 1, most)?;
-            length("reach", reach)?;
+            far(reach)?;
             number("tau", tau, 1e-3, 1000.0)
         }
     }

@@ -27,7 +27,7 @@ macro_rules! occlusion {
 }
 
 const SHARPNESS: Slot = slot("sharpness", "16", "Larger is sharper, 1 to 1000.");
-const REACH: Slot = slot("reach", "1.5", "How far they look, scene units.");
+const REACH: Slot = slot("reach", "unlimited", "How far they look, scene units.");
 const RAYS: Slot = slot("rays", "64", "Number of rays.");
 
 /// The functions.
@@ -273,10 +273,10 @@ pub(crate) const ALL: &[Native] = &[
     ),
     occlusion!(
         "cones",
-        "Nine cones over the hemisphere.",
-        [REACH, slot("steps", "5", "Samples along a cone.")],
+        "Eleven cones, each as open as its axis is clear.",
+        [REACH, slot("steps", "14", "Samples along a cone, at most.")],
         |c| {
-            let (reach, steps) = (small(c, "reach", 1.5, 1e-6, 1e6)?, samples(c, "steps", 5)?);
+            let (reach, steps) = (reach(c)?, samples(c, "steps", 14)?);
             occlusion(c, Occlusion::Cones { reach, steps })
         }
     ),
@@ -285,7 +285,7 @@ pub(crate) const ALL: &[Native] = &[
         "Sampled visibility: the reference.",
         [RAYS, REACH],
         |c| {
-            let (rays, reach) = (samples(c, "rays", 64)?, small(c, "reach", 1.5, 1e-6, 1e6)?);
+            let (rays, reach) = (samples(c, "rays", 64)?, reach(c)?);
             occlusion(c, Occlusion::Hemisphere { rays, reach })
         }
     ),
@@ -298,7 +298,7 @@ pub(crate) const ALL: &[Native] = &[
             slot("tau", "2", "Falloff over distance, above 0 to 1000.")
         ],
         |c| {
-            let (rays, reach) = (samples(c, "rays", 64)?, small(c, "reach", 1.5, 1e-6, 1e6)?);
+            let (rays, reach) = (samples(c, "rays", 64)?, reach(c)?);
             let tau = small(c, "tau", 2.0, 1e-3, 1000.0)?;
             occlusion(c, Occlusion::Obscurance { rays, reach, tau })
         }
@@ -311,6 +311,13 @@ fn march(c: &mut Call<'_, '_>, march: March) -> Run<Value> {
 
 fn occlusion(c: &mut Call<'_, '_>, occlusion: Occlusion) -> Run<Value> {
     c.machine.thing(Thing::Occlusion(occlusion))
+}
+
+/// How far occlusion looks: to the end of the scene where nothing is said.
+fn reach(c: &Call<'_, '_>) -> Run<Option<f32>> {
+    (c.get("reach"))
+        .map(|g| Ok(c.ranged("reach", g, 1e-6, 1e6)? as f32))
+        .transpose()
 }
 
 fn small(c: &Call<'_, '_>, name: &str, default: f64, min: f64, max: f64) -> Run<f32> {

@@ -1,13 +1,11 @@
-//! Shadows and occlusion.
+//! Shadows.
 
 use super::{Plain, Probe, field, glam};
-use crate::ao::{CONE_COSINES, CONE_RATIO, CONE_TANGENT, EVANS, UP, cone_directions, turn};
 use crate::beam::{FIRST, LEAST, STOP};
-use crate::sampling::{cosine_direction, point};
 use crate::shade::arrival;
 use crate::shadow::{DARK, closest};
 use glam::Vec3;
-use zeroset_scene::settings::{Occlusion, Shadow};
+use zeroset_scene::settings::Shadow;
 use zeroset_scene::view::ROUNDING;
 
 /// A place on a surface that light falls on.
@@ -68,7 +66,7 @@ impl Plain<'_> {
     }
 
     /// 1 where nothing is in the way, else what `stopped` makes of the distance (Tomczak 2012, algorithm 3.2).
-    fn hard(
+    pub(super) fn hard(
         &self,
         probe: &mut impl Probe,
         at: &Surface,
@@ -135,106 +133,4 @@ impl Plain<'_> {
         }
         light
     }
-
-    /// Ambient visibility and the bent normal.
-    pub(super) fn occlusion(
-        &self,
-        probe: &mut impl Probe,
-        at: &Surface,
-        object: f32,
-        key: [u32; 2],
-    ) -> (f32, Vec3) {
-        let chosen = self
-            .scene
-            .objects
-            .get(object.max(0.0) as usize)
-            .and_then(|o| o.occlusion);
-        let up = Vec3::from(UP);
-        let mut f = |p: Vec3| self.distance(probe, p);
-        let open = match chosen.unwrap_or(self.settings.occlusion) {
-            Occlusion::None => 1.0,
-            Occlusion::Quilez { steps, step, scale } => {
-                let part = |k: u32| {
-                    let far = k as f32 * step;
-                    0.5f32.powi(k as i32) * (far - f(at.p + at.normal * far))
-                };
-                1.0 - (scale * (1..=steps).map(part).sum::<f32>()).clamp(0.0, 1.0)
-            }
-            Occlusion::Bent {
-                steps,
-                step,
-                scale,
-                bend,
-            } => {
-                let (mut n, mut sum) = (at.normal, 0.0);
-                for k in 1..=steps {
-                    let far = k as f32 * step;
-                    sum += 1.1f32.powi(-(k as i32)) * (n.length() * far - f(at.p + n * far));
-                    n += up * bend;
-                }
-                1.0 - (scale * sum).clamp(0.0, 1.0)
-            }
-            Occlusion::Evans { scale, step, bend } => {
-                let n = at.normal + up * bend;
-                let part = |(k, weight): (usize, &f32)| {
-                    let far = step * (1 << k) as f32;
-                    weight * (far - f(at.p + n * far))
-                };
-                (-scale * EVANS.iter().enumerate().map(part).sum::<f32>())
-                    .min(0.0)
-                    .exp()
-            }
-            Occlusion::Upward { scale } => {
-                1.0 - (scale * (1.0 - at.normal.dot(up))).clamp(0.0, 1.0)
-            }
-            Occlusion::Cones { reach, steps } => return cones(&mut f, at, reach, steps),
-            Occlusion::Hemisphere { rays, reach } => {
-                self.hemisphere(probe, at, rays, reach, key, |_| 0.0)
-            }
-            Occlusion::Obscurance { rays, reach, tau } => {
-                self.hemisphere(probe, at, rays, reach, key, |t| 1.0 - (-tau * t).exp())
-            }
-        };
-        (open, at.normal)
-    }
-
-    fn hemisphere(
-        &self,
-        probe: &mut impl Probe,
-        at: &Surface,
-        rays: u32,
-        reach: f32,
-        key: [u32; 2],
-        stopped: impl Fn(f32) -> f32 + Copy,
-    ) -> f32 {
-        let mut sum = 0.0;
-        for i in 0..rays {
-            let [u, v] = point(i, key);
-            let to = glam(cosine_direction(field(at.normal), u, v));
-            if at.normal.dot(to) > 0.0 {
-                sum += self.hard(probe, at, to, reach, stopped);
-            }
-        }
-        sum / rays.max(1) as f32
-    }
-}
-
-fn cones(f: &mut impl FnMut(Vec3) -> f32, at: &Surface, reach: f32, steps: u32) -> (f32, Vec3) {
-    let origin = at.p + at.normal * at.offset;
-    let (mut open, mut bent, mut total) = (0.0, Vec3::ZERO, 0.0);
-    for (w, cosine) in cone_directions().into_iter().zip(CONE_COSINES) {
-        let to = glam(turn(field(at.normal), w));
-        let (mut least, mut t) = (1.0f32, reach);
-        for _ in 0..steps {
-            least = least.min((f(origin + to * t) / (t * CONE_TANGENT.min(cosine))).max(0.0));
-            t *= CONE_RATIO;
-        }
-        open += least * cosine;
-        bent += to * (least * cosine);
-        total += cosine;
-    }
-    (
-        open / total,
-        (bent + at.normal * 1e-3).normalize_or(at.normal),
-    )
 }

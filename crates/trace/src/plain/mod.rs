@@ -4,6 +4,7 @@
 //! It shares the formulas of cameras, filters, patterns and light with the stream. All that the stream does in its own way
 //! is written anew here: marching (without cones), hits, normals, occlusion, shadows, samples and their filter.
 
+mod ao;
 pub mod dense;
 mod light;
 mod march;

@@ -6,6 +6,7 @@ mod compare;
 mod marchers;
 mod methods;
 mod mutants;
+mod openness;
 mod robust;
 mod scenes;
 mod surfaces;

@@ -64,7 +64,11 @@ fn occlusion() {
         },
         Occlusion::Upward { scale: 0.5 },
         Occlusion::Cones {
-            reach: 1.5,
+            reach: None,
+            steps: 14,
+        },
+        Occlusion::Cones {
+            reach: Some(0.5),
             steps: 5,
         },
     ] {
@@ -81,11 +85,11 @@ fn sampled_occlusion() {
     for occlusion in [
         Occlusion::Hemisphere {
             rays: 16,
-            reach: 2.0,
+            reach: None,
         },
         Occlusion::Obscurance {
             rays: 16,
-            reach: 2.0,
+            reach: Some(2.0),
             tau: 1.0,
         },
     ] {

@@ -31,12 +31,12 @@ fn threads_do_not_change_the_picture() {
         ] {
             for occlusion in [
                 Occlusion::Cones {
-                    reach: 1.0,
-                    steps: 3,
+                    reach: None,
+                    steps: 14,
                 },
                 Occlusion::Hemisphere {
                     rays: 4,
-                    reach: 1.0,
+                    reach: Some(1.0),
                 },
             ] {
                 scene.settings = Settings {
@@ -218,8 +218,8 @@ fn a_bare_plane_is_wholly_open() {
         let mut scene = view(eye, [0.0, 0.0, 0.0], 0.7);
         scene.objects.push(object(shape("plane", &[]), 0));
         scene.settings.occlusion = Occlusion::Cones {
-            reach: 1.5,
-            steps: 5,
+            reach: None,
+            steps: 14,
         };
         for film in [stream(&scene), reference(&scene)] {
             let pixels = film

@@ -134,7 +134,7 @@ fn every_method_can_be_chosen() {
         look.settings.occlusion,
         Occlusion::Obscurance {
             rays: 64,
-            reach: 1.5,
+            reach: None,
             tau: 4.0
         }
     );

@@ -1,0 +1,261 @@
+//! Occlusion from samples of the field along one way: the methods of the papers that are made for speed.
+
+use super::{UP, batches, value};
+use crate::normal::sample;
+use crate::simd::{
+    Chosen, along, first_lanes, load, load_words, load3, sided, splat, splat3, store,
+};
+use crate::tile::{Scratch, Solid};
+use fearless_simd::{Simd, prelude::*};
+use std::ops::Range;
+use zeroset_field::eval::BATCH;
+use zeroset_field::number::{Lanes, Ops, Real, v3};
+
+/// Occlusion less than this is none: no picture can show it.
+const NOTHING: f32 = 1.0 / 4096.0;
+
+/// `1 - clamp(scale sum_k 2^-k (k dt - f(x + k dt n)), 0, 1)` (Tomczak 2012, algorithm 3.4 with the sum of equation 3.31).
+///
+/// No sample can be closer to a surface than the farthest one plus the way between them, so every term is at most as large
+/// as the farthest sample's shortfall: where that is nothing, one sample is enough.
+pub(super) fn quilez<S: Simd>(
+    s: S,
+    solid: &Solid<'_>,
+    steps: u32,
+    step: f32,
+    scale: f32,
+    range: Range<usize>,
+    q: &mut Scratch,
+) {
+    s.vectorize(
+        #[inline(always)]
+        || {
+            let far = steps as f32 * step;
+            for (k, n) in batches(range.clone()) {
+                let hits = &q.hits;
+                sample(
+                    s,
+                    solid,
+                    n,
+                    &mut q.work,
+                    #[inline(always)]
+                    |i| {
+                        along(
+                            load3(s, &hits.point, k + i),
+                            load3(s, &hits.normal, k + i),
+                            splat(s, far),
+                        )
+                    },
+                );
+                q.counts.occlusion += n as u64;
+                for i in (0..n).step_by(S::f32s::LEN) {
+                    let f = value(s, q, k, i);
+                    store(-(f - far), &mut q.hits.open, k + i);
+                    let radius = -(load(s, &q.hits.offset, k + i) - far);
+                    store(
+                        Lanes::select(f.below(radius), splat(s, 0.0), radius.max(0.0)),
+                        &mut q.hits.ball,
+                        k + i,
+                    );
+                }
+            }
+            if steps < 2 {
+                finish(s, scale * 0.5, range.clone(), q);
+                return;
+            }
+            q.beams.count = 0;
+            for at in range.clone().step_by(S::f32s::LEN) {
+                let (hits, beams) = (&mut q.hits, &mut *q.beams);
+                let short = load(s, &hits.open, at);
+                let more =
+                    Chosen::new((short * scale).above(NOTHING) & first_lanes(s, range.end - at));
+                store(splat(s, 1.0), &mut hits.open, at);
+                if more.none() {
+                    continue;
+                }
+                let b = beams.count;
+                more.put3(load3(s, &hits.point, at), &mut beams.origin, b);
+                more.put3(load3(s, &hits.normal, at), &mut beams.direction, b);
+                more.put(short * 0.5f32.powi(steps as i32), &mut beams.light, b);
+                let side = load_words(s, &hits.word, at) & crate::simd::INSIDE;
+                let ordinal = S::u32s::from_fn(
+                    s,
+                    #[inline(always)]
+                    |k| (at + k) as u32,
+                );
+                more.put_words(ordinal | side, &mut beams.word, b);
+                beams.count += more.count;
+                if beams.count + S::f32s::LEN > BATCH {
+                    nearer(s, solid, steps, step, scale, q);
+                }
+            }
+            if q.beams.count > 0 {
+                nearer(s, solid, steps, step, scale, q);
+            }
+        },
+    );
+}
+
+/// The nearer samples of [`quilez`], for the hits that need them.
+#[inline(always)]
+fn nearer<S: Simd>(s: S, solid: &Solid<'_>, steps: u32, step: f32, scale: f32, q: &mut Scratch) {
+    let n = q.beams.count;
+    for k in 1..steps {
+        let (far, beams) = (k as f32 * step, &*q.beams);
+        sample(
+            s,
+            solid,
+            n,
+            &mut q.work,
+            #[inline(always)]
+            |i| {
+                along(
+                    load3(s, &beams.origin, i),
+                    load3(s, &beams.direction, i),
+                    splat(s, far),
+                )
+            },
+        );
+        q.counts.occlusion += n as u64;
+        let weight = 0.5f32.powi(k as i32);
+        for i in (0..n).step_by(S::f32s::LEN) {
+            let f = sided(
+                load(s, &q.work.values().0, i),
+                load_words(s, &q.beams.word, i),
+            );
+            let sum = load(s, &q.beams.light, i) - (f - far) * weight;
+            store(sum, &mut q.beams.light, i);
+        }
+    }
+    for (&word, &sum) in q.beams.word[..n].iter().zip(&q.beams.light[..n]) {
+        q.hits.open[(word & crate::march::ORDINAL) as usize] = 1.0 - (scale * sum).clamp(0.0, 1.0);
+    }
+    q.beams.count = 0;
+}
+
+/// `1 - clamp(scale sum, 0, 1)` of the sums that are in place of the visibility.
+#[inline(always)]
+fn finish<S: Simd>(s: S, scale: f32, range: Range<usize>, q: &mut Scratch) {
+    for i in range.step_by(S::f32s::LEN) {
+        let sum = load(s, &q.hits.open, i) * scale;
+        store(sum.clamp01().one_minus(), &mut q.hits.open, i);
+    }
+}
+
+/// `1 - clamp(scale sum_k 1.1^-k (|n| k dt - f(x + k dt n)), 0, 1)`, with `n += bend up` after every sample (Tomczak 2012,
+/// algorithm 3.7).
+#[expect(clippy::too_many_arguments, reason = "the method's own numbers")]
+pub(super) fn bent<S: Simd>(
+    s: S,
+    solid: &Solid<'_>,
+    steps: u32,
+    step: f32,
+    scale: f32,
+    bend: f32,
+    range: Range<usize>,
+    q: &mut Scratch,
+) {
+    s.vectorize(
+        #[inline(always)]
+        || {
+            for (k, n) in batches(range.clone()) {
+                q.hits.open[k..k + n].fill(0.0);
+                for j in 1..=steps {
+                    let (far, up) = (
+                        j as f32 * step,
+                        splat3(s, UP.map(|c| c * bend * (j - 1) as f32)),
+                    );
+                    let hits = &q.hits;
+                    sample(
+                        s,
+                        solid,
+                        n,
+                        &mut q.work,
+                        #[inline(always)]
+                        |i| {
+                            along(
+                                load3(s, &hits.point, k + i),
+                                load3(s, &hits.normal, k + i) + up,
+                                splat(s, far),
+                            )
+                        },
+                    );
+                    q.counts.occlusion += n as u64;
+                    let weight = 1.1f32.powi(-(j as i32));
+                    for i in (0..n).step_by(S::f32s::LEN) {
+                        let way = (load3(s, &q.hits.normal, k + i) + up).length() * far;
+                        let sum = load(s, &q.hits.open, k + i) + (way - value(s, q, k, i)) * weight;
+                        store(sum, &mut q.hits.open, k + i);
+                    }
+                }
+            }
+            finish(s, scale, range, q);
+        },
+    );
+}
+
+/// Weights of the samples of [`evans`] (Evans 2006, listing 1).
+pub(crate) const EVANS: [f32; 4] = [1.0, 1.2, 1.4, 1.8];
+
+/// `exp(-scale sum_i w_i (d_i - f(x + d_i n')))` with `n' = n + bend up` and `d_i` doubling (Evans 2006, 9.6; Tomczak 2012,
+/// equation 3.26 with its sign mended), not above 1.
+pub(super) fn evans<S: Simd>(
+    s: S,
+    solid: &Solid<'_>,
+    scale: f32,
+    step: f32,
+    bend: f32,
+    range: Range<usize>,
+    q: &mut Scratch,
+) {
+    s.vectorize(
+        #[inline(always)]
+        || {
+            let up = splat3(s, UP.map(|c| c * bend));
+            for (k, n) in batches(range) {
+                q.hits.open[k..k + n].fill(0.0);
+                for (j, weight) in EVANS.into_iter().enumerate() {
+                    let far = step * (1 << j) as f32;
+                    let hits = &q.hits;
+                    sample(
+                        s,
+                        solid,
+                        n,
+                        &mut q.work,
+                        #[inline(always)]
+                        |i| {
+                            along(
+                                load3(s, &hits.point, k + i),
+                                load3(s, &hits.normal, k + i) + up,
+                                splat(s, far),
+                            )
+                        },
+                    );
+                    q.counts.occlusion += n as u64;
+                    for i in (0..n).step_by(S::f32s::LEN) {
+                        let sum = load(s, &q.hits.open, k + i) + (value(s, q, k, i) - far) * weight;
+                        store(sum, &mut q.hits.open, k + i);
+                    }
+                }
+                for i in (0..n).step_by(S::f32s::LEN) {
+                    let open = (load(s, &q.hits.open, k + i) * scale).min(0.0).exp();
+                    store(open, &mut q.hits.open, k + i);
+                }
+            }
+        },
+    );
+}
+
+/// `1 - clamp(scale (1 - n . up), 0, 1)` (Tomczak 2012, algorithm 4.3).
+pub(super) fn upward<S: Simd>(s: S, scale: f32, range: Range<usize>, q: &mut Scratch) {
+    s.vectorize(
+        #[inline(always)]
+        || {
+            for i in range.clone().step_by(S::f32s::LEN) {
+                let cosine = load3(s, &q.hits.normal, i).dot(v3(UP[0], UP[1], UP[2]));
+                store(cosine.one_minus(), &mut q.hits.open, i);
+            }
+            finish(s, scale, range, q);
+        },
+    );
+}
