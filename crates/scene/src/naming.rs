@@ -73,6 +73,22 @@ pub(crate) fn floor_char(text: &str, at: usize) -> usize {
         .unwrap_or(0)
 }
 
+/// At most about `most` characters of a text: its beginning and its end, and how many are left out between them.
+pub(crate) fn shortened(text: &str, most: usize) -> String {
+    let length = text.chars().count();
+    if length <= most {
+        return text.to_string();
+    }
+    let (head, tail) = (most * 3 / 4, most / 4);
+    let at = |n: usize| text.char_indices().nth(n).map_or(text.len(), |(at, _)| at);
+    format!(
+        "{} [... {} characters ...] {}",
+        &text[..at(head)],
+        length - head - tail,
+        &text[at(length - tail)..]
+    )
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -159,6 +175,18 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn long_texts_lose_their_middle() {
+        assert_eq!(shortened("abc", 3), "abc");
+        assert_eq!(shortened("äöü", 3), "äöü");
+        assert_eq!(
+            shortened("0123456789", 8),
+            "012345 [... 2 characters ...] 89"
+        );
+        let long = "ä".repeat(1_000_000);
+        assert!(shortened(&long, 1000).chars().count() < 1040);
     }
 
     #[cfg(unix)]
