@@ -243,9 +243,18 @@ impl GpuRenderer {
 
 impl Renderer for GpuRenderer {
     fn render(&self, scene: &Scene, observer: &dyn Observer) -> Result<Frame, RenderError> {
+        self.render_planes(scene, &Plane::ALL, observer)
+    }
+
+    fn render_planes(
+        &self,
+        scene: &Scene,
+        planes: &[Plane],
+        observer: &dyn Observer,
+    ) -> Result<Frame, RenderError> {
         let job = self.prepare(scene)?;
         let [width, height] = scene.settings.size;
-        let mut film = Film::new(width, height);
+        let mut film = Film::with(width, height, planes);
         let statistics = self.render_into(&job, &mut film, observer)?;
         Ok(Frame { film, statistics })
     }

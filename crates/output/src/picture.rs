@@ -11,6 +11,70 @@ pub struct Picture {
     pixels: Vec<[f32; 3]>,
 }
 
+/// What can be written row by row, without a copy of the whole.
+pub trait Rows {
+    /// Width in pixels.
+    fn width(&self) -> u32;
+    /// Height in pixels.
+    fn height(&self) -> u32;
+    /// The pixels of a row, from the left, in place of what was in `out`.
+    fn row(&self, y: u32, out: &mut Vec<[f32; 3]>);
+}
+
+impl Rows for Picture {
+    fn width(&self) -> u32 {
+        self.width
+    }
+
+    fn height(&self) -> u32 {
+        self.height
+    }
+
+    fn row(&self, y: u32, out: &mut Vec<[f32; 3]>) {
+        let width = self.width as usize;
+        out.clear();
+        out.extend_from_slice(&self.pixels[y as usize * width..][..width]);
+    }
+}
+
+/// The colour plane of a film as [`Picture::develop`] shows it, row by row.
+#[derive(Clone, Copy, Debug)]
+pub struct Developed<'f> {
+    film: &'f Film,
+    gain: f32,
+}
+
+impl<'f> Developed<'f> {
+    /// A film, brightened by `exposure` stops.
+    pub fn new(film: &'f Film, exposure: f32) -> Developed<'f> {
+        let gain = exposure.exp2();
+        Developed { film, gain }
+    }
+}
+
+impl Rows for Developed<'_> {
+    fn width(&self) -> u32 {
+        self.film.width()
+    }
+
+    fn height(&self) -> u32 {
+        self.film.height()
+    }
+
+    fn row(&self, y: u32, out: &mut Vec<[f32; 3]>) {
+        let width = self.film.width() as usize;
+        out.clear();
+        let (linear, _) = self.film.plane(Plane::Colour).as_chunks::<3>();
+        match linear.get(y as usize * width..(y as usize + 1) * width) {
+            Some(row) => out.extend(
+                row.iter()
+                    .map(|rgb| rgb.map(|c| tone::encode(c * self.gain))),
+            ),
+            None => out.resize(width, [0.0; 3]),
+        }
+    }
+}
+
 impl Picture {
     /// A picture of one colour. The caller has checked the size against its limits.
     pub fn filled(width: u32, height: u32, colour: [f32; 3]) -> Picture {
@@ -41,15 +105,13 @@ impl Picture {
     /// The colour plane of a film, brightened by `exposure` stops, clamped to what a screen can show, and sRGB-coded.
     /// What is not a number becomes black, and so does a film without that plane.
     pub fn develop(film: &Film, exposure: f32) -> Picture {
-        if film.plane(Plane::Colour).is_empty() {
-            return Picture::filled(film.width(), film.height(), [0.0; 3]);
+        let developed = Developed::new(film, exposure);
+        let mut pixels = Vec::with_capacity(film.width() as usize * film.height() as usize);
+        let mut row = Vec::new();
+        for y in 0..film.height() {
+            developed.row(y, &mut row);
+            pixels.extend_from_slice(&row);
         }
-        let gain = exposure.exp2();
-        let (linear, _) = film.plane(Plane::Colour).as_chunks::<3>();
-        let pixels = linear
-            .iter()
-            .map(|rgb| rgb.map(|c| tone::encode(c * gain)))
-            .collect();
         Picture {
             width: film.width(),
             height: film.height(),

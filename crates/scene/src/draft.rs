@@ -2,11 +2,14 @@
 
 use crate::camera::{Camera, Lens};
 use crate::files::Files;
+use crate::film::Plane;
 use crate::framing;
+use crate::json::valid;
 use crate::light::{self, Light, Sky};
 use crate::limits::Limits;
 use crate::load::{Options, Parameter};
 use crate::material::Material;
+use crate::naming::shortened;
 use crate::report::{Place, Source, suggestion};
 use crate::scene::{Object, Scene};
 use crate::settings::{Settings, Shading, Shadow};
@@ -79,6 +82,8 @@ pub(crate) struct Draft {
 
 /// Lines of the log that are kept.
 const LOG: usize = 1000;
+/// Characters of such a line that are kept.
+const LOG_LINE: usize = 2000;
 
 impl Draft {
     pub(crate) fn new(options: &Options, files: Files, sources: Vec<Source>) -> Draft {
@@ -103,9 +108,9 @@ impl Draft {
         }
     }
 
-    pub(crate) fn print(&mut self, line: String) {
+    pub(crate) fn print(&mut self, line: &str) {
         if self.log.len() < LOG {
-            self.log.push(line);
+            self.log.push(shortened(line, LOG_LINE));
         }
     }
 
@@ -166,7 +171,7 @@ impl Draft {
         let bounds = objects.iter().map(|o| o.field.facts().bounds);
         let camera = framing::camera(&self.view.unwrap_or_default(), bounds, settings.size)?;
         let sky = self.sky.unwrap_or_default();
-        Ok(Scene {
+        let scene = Scene {
             name: self.name.unwrap_or_else(|| name.to_string()),
             objects,
             materials: self.materials,
@@ -174,7 +179,23 @@ impl Draft {
             sky,
             camera,
             settings,
-        })
+        };
+        // numbers of double precision may have become infinite in single precision
+        valid::scene(&scene, limits).map_err(|p| p.message())?;
+        Ok(scene)
+    }
+}
+
+/// The most lights a scene may have.
+pub(crate) const LIGHTS: usize = 64;
+
+/// A direction of length 1, even where the squares of its numbers underflow or overflow.
+pub(crate) fn unit(direction: [f64; 3]) -> DVec3 {
+    let v = DVec3::from(direction);
+    if (1e-200..1e200).contains(&v.length_squared()) {
+        v.normalize()
+    } else {
+        (v / v.abs().max_element()).normalize()
     }
 }
 
@@ -188,7 +209,10 @@ pub(crate) fn check_size([width, height]: [u32; 2], limits: &Limits) -> Result<(
             limits.pixels
         ));
     }
-    Ok(())
+    // of the colour alone: what else is asked for is known to whoever renders
+    limits
+        .check_picture([width, height], &[Plane::Colour], 0)
+        .map_err(|e| e.to_string())
 }
 
 /// The sun of a scene that states no light.

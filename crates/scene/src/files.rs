@@ -1,8 +1,12 @@
 //! Files of a scene: only those below its own folder, and only ordinary ones of a limited size.
 
+use crate::budget::{Budget, Spent};
+use crate::material::Image;
+use std::collections::HashMap;
 use std::fs;
 use std::io::Read;
 use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
 
 /// Why a file cannot be loaded.
 #[derive(Debug, thiserror::Error)]
@@ -24,8 +28,18 @@ pub(crate) enum FileError {
     },
     #[error("\"{name}\" cannot be read: {reason}")]
     Unreadable { name: String, reason: String },
-    #[error("\"{0}\" is not text in UTF-8")]
-    Text(String),
+    #[error(
+        "\"{name}\" is not text in UTF-8: byte {at}, in line {line}, cannot be part of it{}",
+        if *.wide { " (it looks like UTF-16)" } else { "" }
+    )]
+    Text {
+        name: String,
+        at: usize,
+        line: usize,
+        wide: bool,
+    },
+    #[error(transparent)]
+    Spent(#[from] Spent),
     #[error("a scene in memory has no folder to load \"{0}\" from")]
     NoFolder(String),
     #[error("the scene loads more than {0} files (limit `files`)")]
@@ -33,20 +47,28 @@ pub(crate) enum FileError {
 }
 
 /// A folder that files are read from, and what was read.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Files {
     /// Absent for a scene in memory.
     root: Option<PathBuf>,
     loaded: Vec<PathBuf>,
     limit: u64,
+    /// What loading may still take.
+    pub(crate) budget: Budget,
+    /// Files by where they really are, so that each is read once under whatever names.
+    bytes: HashMap<PathBuf, Arc<[u8]>>,
+    images: HashMap<PathBuf, Arc<Image>>,
 }
 
 impl Files {
-    pub(crate) fn new(root: Option<PathBuf>, limit: u64) -> Files {
+    pub(crate) fn new(root: Option<PathBuf>, limit: u64, budget: Budget) -> Files {
         Files {
             root,
             loaded: Vec::new(),
             limit,
+            budget,
+            bytes: HashMap::new(),
+            images: HashMap::new(),
         }
     }
 
@@ -80,13 +102,8 @@ impl Files {
         }
     }
 
-    /// The bytes of a file below the folder.
-    pub(crate) fn read(
-        &mut self,
-        name: &str,
-        limit: u64,
-        flag: &'static str,
-    ) -> Result<Vec<u8>, FileError> {
+    /// Where a file below the folder really is, behind all links.
+    pub(crate) fn find(&mut self, name: &str) -> Result<PathBuf, FileError> {
         let normal = Files::normal(name)?;
         let root = self
             .root
@@ -100,57 +117,146 @@ impl Files {
             self.loaded.push(path.clone());
         }
         // a link may point out of the folder: what counts is where the path ends
-        let missing = |_| FileError::Missing(name.to_string());
+        let missing = |e: std::io::Error| unreadable(name, &e);
         let real = fs::canonicalize(&path).map_err(missing)?;
         if !real.starts_with(fs::canonicalize(&root).map_err(missing)?) {
             return Err(FileError::Outside(name.to_string()));
         }
-        read_ordinary(&real, name, limit, flag)
+        Ok(real)
     }
 
-    /// The text of a file below the folder.
-    pub(crate) fn read_text(&mut self, name: &str, limit: u64) -> Result<String, FileError> {
-        let bytes = self.read(name, limit, "file_bytes")?;
-        String::from_utf8(bytes).map_err(|_| FileError::Text(name.to_string()))
+    /// Where a file really is that was read already, as the scene's own was.
+    pub(crate) fn real(&self, name: &str) -> Option<PathBuf> {
+        fs::canonicalize(self.root.as_ref()?.join(name)).ok()
+    }
+
+    /// The bytes of a file below the folder. They are read once and kept.
+    pub(crate) fn read(
+        &mut self,
+        name: &str,
+        limit: u64,
+        flag: &'static str,
+    ) -> Result<Arc<[u8]>, FileError> {
+        let real = self.find(name)?;
+        if let Some(bytes) = self.bytes.get(&real) {
+            return Ok(bytes.clone());
+        }
+        self.budget.check_clock()?;
+        let bytes = read_ordinary(&real, name, limit, flag, &mut self.budget)?;
+        // the bytes as they were read and as they are kept
+        let twice = 2 * bytes.len() as u64;
+        self.budget.borrow(twice, || format!("\"{name}\""))?;
+        let bytes: Arc<[u8]> = bytes.into();
+        self.bytes.insert(real, bytes.clone());
+        Ok(bytes)
+    }
+
+    /// The text of a file that was found. It is not kept, but charged as if it were, as its source is.
+    pub(crate) fn read_text(
+        &mut self,
+        real: &Path,
+        name: &str,
+        limit: u64,
+    ) -> Result<String, FileError> {
+        self.budget.check_clock()?;
+        let bytes = read_ordinary(real, name, limit, "file_bytes", &mut self.budget)?;
+        text(bytes, name)
+    }
+
+    /// An image of a file below the folder, decoded once.
+    pub(crate) fn image(
+        &mut self,
+        name: &str,
+        decode: impl FnOnce(&mut Files, &Path) -> Result<Image, String>,
+    ) -> Result<Arc<Image>, String> {
+        let real = self.find(name).map_err(|e| e.to_string())?;
+        if let Some(image) = self.images.get(&real) {
+            return Ok(image.clone());
+        }
+        self.budget.check_clock().map_err(|e| e.to_string())?;
+        let image = Arc::new(decode(self, &real)?);
+        self.images.insert(real, image.clone());
+        Ok(image)
     }
 }
 
-/// The bytes of an ordinary file. A pipe or a device is never opened, as that could wait for ever.
+/// Bytes as text.
+pub(crate) fn text(bytes: Vec<u8>, name: &str) -> Result<String, FileError> {
+    String::from_utf8(bytes).map_err(|e| {
+        let at = e.utf8_error().valid_up_to();
+        let bytes = e.as_bytes();
+        FileError::Text {
+            name: name.to_string(),
+            at: at + 1,
+            line: bytes[..at].iter().filter(|b| **b == b'\n').count() + 1,
+            wide: bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff"),
+        }
+    })
+}
+
+/// Why the system does not give a file.
+fn unreadable(name: &str, error: &std::io::Error) -> FileError {
+    use std::io::ErrorKind::{NotADirectory, NotFound};
+    match error.kind() {
+        NotFound | NotADirectory => FileError::Missing(name.to_string()),
+        _ => FileError::Unreadable {
+            name: name.to_string(),
+            reason: error.to_string(),
+        },
+    }
+}
+
+/// The bytes of an ordinary file, charged before they are read. A pipe or a device is never opened, as that could wait for
+/// ever.
 pub(crate) fn read_ordinary(
     path: &Path,
     name: &str,
     limit: u64,
     flag: &'static str,
+    budget: &mut Budget,
 ) -> Result<Vec<u8>, FileError> {
-    let unreadable = |e: std::io::Error| FileError::Unreadable {
-        name: name.to_string(),
-        reason: e.to_string(),
-    };
+    let failed = |e: std::io::Error| unreadable(name, &e);
     let large = |bytes| FileError::Large {
         name: name.to_string(),
         bytes,
         limit,
         flag,
     };
-    let about = fs::metadata(path).map_err(|e| match e.kind() {
-        std::io::ErrorKind::NotFound => FileError::Missing(name.to_string()),
-        _ => unreadable(e),
-    })?;
+    let about = fs::metadata(path).map_err(failed)?;
     if !about.is_file() {
         return Err(FileError::Special(name.to_string()));
     }
     if about.len() > limit {
         return Err(large(about.len()));
     }
+    budget.hold(about.len(), || format!("\"{name}\""))?;
+    let mut file = fs::File::open(path).map_err(failed)?;
+    // it may have become something else, or have grown, since
+    if !file.metadata().map_err(failed)?.is_file() {
+        return Err(FileError::Special(name.to_string()));
+    }
     let mut bytes = Vec::with_capacity(about.len() as usize);
-    let file = fs::File::open(path).map_err(unreadable)?;
-    // the file may have grown since
-    file.take(limit + 1)
-        .read_to_end(&mut bytes)
-        .map_err(unreadable)?;
-    if bytes.len() as u64 > limit {
-        Err(large(bytes.len() as u64))
-    } else {
-        Ok(bytes)
+    let mut taken = about.len();
+    loop {
+        let more = (&mut file)
+            .take(PIECE)
+            .read_to_end(&mut bytes)
+            .map_err(failed)?;
+        if more == 0 {
+            return Ok(bytes);
+        }
+        let length = bytes.len() as u64;
+        if length > limit {
+            return Err(large(length));
+        }
+        if length > taken {
+            // room for the next piece too, and for the vector that is left behind when it grows
+            budget.hold(3 * (length + PIECE - taken), || format!("\"{name}\""))?;
+            taken = length + PIECE;
+        }
+        budget.check_clock()?;
     }
 }
+
+/// Bytes that are read at a time.
+const PIECE: u64 = 1 << 20;

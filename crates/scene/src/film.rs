@@ -65,6 +65,30 @@ impl Plane {
     }
 }
 
+/// Bytes of a film with these planes.
+pub fn bytes([width, height]: [u32; 2], planes: &[Plane]) -> u64 {
+    let numbers: usize = planes.iter().map(|p| p.channels()).sum();
+    let pixels = u64::from(width) * u64::from(height);
+    pixels.saturating_mul(4 * numbers as u64)
+}
+
+/// Bytes of sums that a renderer keeps beside the film at a time, unless the picture is so wide that it needs more.
+pub const SUMS: u64 = 256 << 20;
+
+/// An upper bound of the bytes that a renderer takes beside the film of a picture: sums of samples, of all its tiles if
+/// that is little, of three rows of tiles at least, as a filter reaches from one row into the next.
+pub fn scratch([width, height]: [u32; 2]) -> u64 {
+    let [width, height] = [
+        u64::from(width).next_multiple_of(64),
+        u64::from(height).next_multiple_of(32),
+    ];
+    let rows = |rows: u64| (width * SUMS_OF_A_PIXEL).saturating_mul(rows);
+    rows(height).min(SUMS.max(rows(3 * 32)))
+}
+
+/// Bytes of the sums of a tile, for each of its pixels.
+const SUMS_OF_A_PIXEL: u64 = 34;
+
 /// A picture in the making: `width * height` pixels of every plane, row by row from the top left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {

@@ -51,7 +51,15 @@ pub(crate) fn camera(
     if !(eye.is_finite() && axes.is_finite() && view.near < far) {
         return Err("the camera must have finite numbers and `near` below `far`".into());
     }
-    Ok(camera_with(axes, eye, lens, view.near, far))
+    let camera = camera_with(axes, eye, lens, view.near, far);
+    // what is finite in double precision need not be in single precision
+    if !(camera.eye.is_finite() && camera.far.is_finite() && camera.near < camera.far) {
+        return Err(format!(
+            "the camera stands too far away for single precision: at ({:e}, {:e}, {:e}), with `near` {:e} and `far` {far:e}",
+            eye.x, eye.y, eye.z, view.near
+        ));
+    }
+    Ok(camera)
 }
 
 /// Columns right, up, backwards. `None` where `back` has no direction.

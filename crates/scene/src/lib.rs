@@ -1,5 +1,6 @@
 //! Scenes: what a renderer gets. Valid by construction: finite numbers, resolved references, checked limits.
 
+mod budget;
 pub mod camera;
 pub mod colour;
 mod draft;
@@ -11,11 +12,14 @@ pub mod json;
 pub mod language;
 pub mod light;
 pub mod limits;
+mod lines;
 pub mod load;
 pub mod material;
+pub mod naming;
 pub mod render;
 pub mod report;
 pub mod scene;
 pub mod settings;
+mod trees;
 pub mod view;
 pub mod watch;

@@ -1,5 +1,8 @@
 //! Limits: what a scene file may cost. Every one is checked before the allocation or the work that it guards.
 
+use crate::budget;
+use crate::film::{self, Plane};
+
 /// What a scene may cost. A file from a stranger ends in an error within these.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
@@ -29,6 +32,10 @@ pub struct Limits {
     pub image_bytes: u64,
     /// Pixels of one image.
     pub image_pixels: u64,
+    /// Bytes of memory of a picture and of what it takes to make it; loading may take an eighth of them.
+    pub memory: u64,
+    /// Characters of a name: of the scene, an object, a parameter.
+    pub name: u64,
 }
 
 impl Default for Limits {
@@ -44,9 +51,11 @@ impl Default for Limits {
             pixels: 64 << 20,
             samples: 4096,
             files: 64,
-            file_bytes: 4 << 20,
+            file_bytes: 16 << 20,
             image_bytes: 32 << 20,
             image_pixels: 4 << 20,
+            memory: 2 << 30,
+            name: 200,
         }
     }
 }
@@ -97,6 +106,14 @@ pub const LIMITS: &[Limit] = &[
     limit!(file_bytes, "bytes of one scene file"),
     limit!(image_bytes, "bytes of one image file"),
     limit!(image_pixels, "pixels of one image"),
+    limit!(
+        memory,
+        "bytes of memory of a picture; loading may take an eighth of them"
+    ),
+    limit!(
+        name,
+        "characters of a name: of the scene, an object, a parameter"
+    ),
 ];
 
 /// Why a limit cannot be set.
@@ -116,9 +133,42 @@ pub enum LimitError {
         /// What was given.
         value: String,
     },
+    /// A picture that would take too much memory.
+    #[error(
+        "a picture of {}x{} pixels takes about {} of memory, at most {} are allowed: make it smaller, or raise the limit \
+         `memory`",
+        .size[0], .size[1], budget::size(*.bytes), budget::size(*.allowed)
+    )]
+    Picture {
+        /// Width and height.
+        size: [u32; 2],
+        /// Estimated bytes.
+        bytes: u64,
+        /// Allowed bytes.
+        allowed: u64,
+    },
 }
 
 impl Limits {
+    /// No limits at all.
+    pub const NONE: Limits = Limits {
+        nodes: u64::MAX,
+        objects: u64::MAX,
+        nesting: u64::MAX,
+        ticks: u64::MAX,
+        heap: u64::MAX,
+        calls: u64::MAX,
+        seconds: f64::INFINITY,
+        pixels: u64::MAX,
+        samples: u64::MAX,
+        files: u64::MAX,
+        file_bytes: u64::MAX,
+        image_bytes: u64::MAX,
+        image_pixels: u64::MAX,
+        memory: u64::MAX,
+        name: u64::MAX,
+    };
+
     /// Sets a limit by name.
     ///
     /// # Errors
@@ -138,6 +188,42 @@ impl Limits {
             }
         }
         Ok(())
+    }
+
+    /// Whether a name is short enough.
+    pub(crate) fn check_name(&self, name: &str) -> Result<(), String> {
+        let length = name.chars().count() as u64;
+        if length <= self.name {
+            return Ok(());
+        }
+        Err(format!(
+            "a name of {length} characters: at most {} are allowed (limit `name`)",
+            self.name
+        ))
+    }
+
+    /// Whether a picture with these planes of a film is allowed, as far as memory goes. `copies` are bytes a pixel that
+    /// are needed beside the film once it is rendered: for what is written to a file or shown.
+    ///
+    /// # Errors
+    /// An estimate of what it takes, with what is allowed.
+    pub fn check_picture(
+        &self,
+        size: [u32; 2],
+        planes: &[Plane],
+        copies: u64,
+    ) -> Result<(), LimitError> {
+        let pixels = u64::from(size[0]) * u64::from(size[1]);
+        let scratch = film::scratch(size).max(pixels.saturating_mul(copies));
+        let bytes = film::bytes(size, planes).saturating_add(scratch);
+        if bytes <= self.memory {
+            return Ok(());
+        }
+        Err(LimitError::Picture {
+            size,
+            bytes,
+            allowed: self.memory,
+        })
     }
 }
 

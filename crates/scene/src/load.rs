@@ -1,18 +1,19 @@
 //! Loading: from a scene file, or its text, to a [`Scene`].
 
+use crate::budget::Budget;
 use crate::draft::Draft;
-use crate::files::{Files, read_ordinary};
+use crate::files::{self, Files, read_ordinary};
 use crate::json;
 use crate::language;
 use crate::language::mistake::{Mistake, Run, mistake};
 use crate::language::module::{Module, parse};
 use crate::limits::Limits;
+use crate::naming::default_stem;
 use crate::report::{Place, Report, Source};
 use crate::scene::Scene;
+use crate::trees;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::time::Instant;
 
 /// What is given beside the file.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -144,10 +145,11 @@ pub fn load(path: &Path, options: &Options) -> Result<Loaded, Failed> {
             )));
         }
     };
-    let bytes = read_ordinary(path, &file_name, options.limits.file_bytes, "file_bytes");
-    let bytes = bytes.map_err(|e| fail(e.to_string()))?;
-    let text =
-        String::from_utf8(bytes).map_err(|_| fail(format!("{file_name} is not text in UTF-8")))?;
+    let mut budget = Budget::new(&options.limits);
+    let most = options.limits.file_bytes;
+    let text = read_ordinary(path, &file_name, most, "file_bytes", &mut budget)
+        .and_then(|bytes| files::text(bytes, &file_name))
+        .map_err(|e| fail(e.to_string()))?;
     let folder = path
         .parent()
         .filter(|p| !p.as_os_str().is_empty())
@@ -158,6 +160,7 @@ pub fn load(path: &Path, options: &Options) -> Result<Loaded, Failed> {
         language,
         Some(folder.to_path_buf()),
         options,
+        budget,
     );
     let own = |mut files: Vec<PathBuf>| {
         files.insert(0, path.to_path_buf());
@@ -186,12 +189,27 @@ pub fn load_text(
     root: Option<&Path>,
     options: &Options,
 ) -> Result<Loaded, Failed> {
+    let mut budget = Budget::new(&options.limits);
+    let length = text.len() as u64;
+    let room = if length > options.limits.file_bytes {
+        let most = options.limits.file_bytes;
+        Err(format!(
+            "\"{name}\" has {length} bytes, at most {most} are allowed (limit `file_bytes`)"
+        ))
+    } else {
+        (budget.hold(length, || format!("\"{name}\""))).map_err(|e| e.to_string())
+    };
+    room.map_err(|message| Failed {
+        report: Report::new(message).in_file(name).into(),
+        files: Vec::new(),
+    })?;
     load_from(
         name,
         text.to_string(),
         language,
         root.map(Path::to_path_buf),
         options,
+        budget,
     )
 }
 
@@ -201,11 +219,12 @@ fn load_from(
     language: Language,
     root: Option<PathBuf>,
     options: &Options,
+    budget: Budget,
 ) -> Result<Loaded, Failed> {
     let (name, options) = (name.to_string(), options.clone());
     let work = move || match language {
-        Language::Starlark => load_starlark(&name, text, root, &options),
-        Language::Json => load_json(&name, &text, root, &options),
+        Language::Starlark => load_starlark(&name, text, root, &options, budget),
+        Language::Json => load_json(&name, &text, root, &options, budget),
     };
     let thread = std::thread::Builder::new()
         .name("scene".into())
@@ -228,22 +247,25 @@ fn load_starlark(
     text: String,
     root: Option<PathBuf>,
     options: &Options,
+    budget: Budget,
 ) -> Result<Loaded, Failed> {
-    let start = Instant::now();
     let mut loader = Loader {
-        files: Files::new(root, options.limits.files.saturating_sub(1)),
+        files: Files::new(root, options.limits.files.saturating_sub(1), budget),
         sources: Vec::new(),
         modules: Vec::new(),
         names: BTreeMap::new(),
         limits: options.limits,
     };
-    if let Err(m) = loader.module(name, text) {
+    // the scene's own file, if it is one
+    let own = loader.files.real(name);
+    let own = own.unwrap_or_else(|| PathBuf::from(name));
+    if let Err(m) = loader.module(name, own, text) {
         let report = m.report(&loader.sources).into();
         let files = loader.files.into_loaded();
         return Err(Failed { report, files });
     }
     let draft = Draft::new(options, loader.files, loader.sources);
-    let (draft, result) = language::run(&loader.modules, draft, &options.limits, start);
+    let (draft, result) = language::run(&loader.modules, draft, &options.limits, budget.start());
     let result = result.map_err(|m| m.report(&draft.sources).into());
     finish(name, draft, result, &options.limits)
 }
@@ -253,12 +275,11 @@ fn load_json(
     text: &str,
     root: Option<PathBuf>,
     options: &Options,
+    budget: Budget,
 ) -> Result<Loaded, Failed> {
-    let files = Files::new(root, options.limits.files.saturating_sub(1));
-    let source = Source {
-        name: name.to_string(),
-        text: Arc::from(text),
-    };
+    let files = Files::new(root, options.limits.files.saturating_sub(1), budget);
+    // some editors begin a file with a byte order mark, which says nothing in UTF-8
+    let source = Source::new(name, text.strip_prefix('\u{feff}').unwrap_or(text));
     let mut draft = Draft::new(options, files, vec![source]);
     let result =
         json::read(&mut draft, &options.limits).and_then(|()| match draft.unknown_parameter() {
@@ -278,10 +299,10 @@ fn finish(
     let files = draft.files.loaded().to_vec();
     let parameters = std::mem::take(&mut draft.parameters);
     let (animated, log) = (draft.animated, std::mem::take(&mut draft.log));
-    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+    let stem = default_stem(Path::new(name));
     let scene = result.and_then(|()| {
         draft
-            .finish(stem, limits)
+            .finish(&stem, limits)
             .map_err(|m| Report::new(m).in_file(name).into())
     });
     match scene {
@@ -301,20 +322,19 @@ struct Loader {
     files: Files,
     sources: Vec<Source>,
     modules: Vec<Module>,
-    /// Modules by their path in the folder; `None` while one is being loaded.
-    names: BTreeMap<String, Option<u32>>,
+    /// Modules by where their files really are; `None` while one is being loaded.
+    names: BTreeMap<PathBuf, Option<u32>>,
     limits: Limits,
 }
 
 impl Loader {
     /// Parses a file, after all that it loads. Gives the number of its module.
-    fn module(&mut self, name: &str, text: String) -> Run<u32> {
+    fn module(&mut self, name: &str, real: PathBuf, text: String) -> Run<u32> {
         let file = self.sources.len() as u32;
-        self.sources.push(Source {
-            name: name.to_string(),
-            text: Arc::from(text.as_str()),
-        });
-        self.names.insert(name.to_string(), None);
+        self.sources.push(Source::new(name, &text));
+        self.names.insert(real.clone(), None);
+        let room = trees::charge(name, &text, &mut self.files.budget);
+        room.map_err(|e| mistake(e.to_string()))?;
         let ast = parse(file, name, &text, &self.limits)?;
         let wanted: Vec<(String, Place)> = (ast.loads().into_iter())
             .map(|l| {
@@ -333,14 +353,20 @@ impl Loader {
         }
         self.modules.push(Module { file, ast, loads });
         let number = self.modules.len() as u32 - 1;
-        self.names.insert(name.to_string(), Some(number));
+        self.names.insert(real, Some(number));
         Ok(number)
     }
 
     /// The number of a module that a `load` names.
     fn loaded(&mut self, path: &str) -> Run<u32> {
-        let name = Files::normal(path).map_err(|e| mistake(e.to_string()))?;
-        match self.names.get(&name) {
+        let wrong = |e: files::FileError| mistake(e.to_string());
+        let name = Files::normal(path).map_err(wrong)?;
+        if !name.ends_with(".star") {
+            return Err(mistake(format!("\"{path}\" does not end in .star"))
+                .help("only scene files can be loaded"));
+        }
+        let real = self.files.find(&name).map_err(wrong)?;
+        match self.names.get(&real) {
             Some(Some(number)) => return Ok(*number),
             Some(None) => {
                 let m = mistake(format!(
@@ -350,14 +376,8 @@ impl Loader {
             }
             None => {}
         }
-        if !name.ends_with(".star") {
-            return Err(mistake(format!("\"{path}\" does not end in .star"))
-                .help("only scene files can be loaded"));
-        }
-        let text = self
-            .files
-            .read_text(&name, self.limits.file_bytes)
-            .map_err(|e| mistake(e.to_string()))?;
-        self.module(&name, text)
+        let most = self.limits.file_bytes;
+        let text = self.files.read_text(&real, &name, most).map_err(wrong)?;
+        self.module(&name, real, text)
     }
 }

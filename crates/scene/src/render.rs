@@ -1,6 +1,6 @@
 //! What a renderer is: the CPU's and the GPU's implement the same trait.
 
-use crate::film::Film;
+use crate::film::{Film, Plane};
 use crate::scene::Scene;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -11,6 +11,20 @@ pub trait Renderer {
     /// # Errors
     /// See [`RenderError`].
     fn render(&self, scene: &Scene, observer: &dyn Observer) -> Result<Frame, RenderError>;
+
+    /// Renders some planes only, which takes less memory. A renderer that cannot leave planes out gives all.
+    ///
+    /// # Errors
+    /// See [`RenderError`].
+    fn render_planes(
+        &self,
+        scene: &Scene,
+        planes: &[Plane],
+        observer: &dyn Observer,
+    ) -> Result<Frame, RenderError> {
+        let _ = planes;
+        self.render(scene, observer)
+    }
 }
 
 /// A finished picture and what it took.

@@ -1,5 +1,7 @@
 //! What a person is told when a scene cannot be loaded: where, what, and what to do.
 
+use crate::lines::Lines;
+use crate::naming::{floor_char, shortened};
 use miette::{
     Diagnostic, LabeledSpan, MietteError, MietteSpanContents, Severity, SourceCode, SourceSpan,
     SpanContents,
@@ -14,6 +16,23 @@ pub struct Source {
     pub name: String,
     /// Its text.
     pub text: Arc<str>,
+    lines: Arc<Lines>,
+}
+
+impl Source {
+    /// A file's text under a name.
+    pub fn new(name: impl Into<String>, text: &str) -> Source {
+        Source {
+            name: name.into(),
+            text: Arc::from(text),
+            lines: Arc::new(Lines::of(text)),
+        }
+    }
+
+    /// Line and column of a byte, 1-based; the column counts characters.
+    pub fn position(&self, at: usize) -> (usize, usize) {
+        self.lines.position(&self.text, floor_char(&self.text, at))
+    }
 }
 
 /// A piece of a file's text.
@@ -45,7 +64,7 @@ impl Report {
     /// A report without a place.
     pub fn new(message: impl Into<String>) -> Report {
         Report {
-            message: message.into(),
+            message: shortened(&message.into(), MESSAGE),
             help: None,
             source: None,
             name: String::new(),
@@ -57,7 +76,7 @@ impl Report {
 
     /// With a hint what to do.
     pub fn with_help(mut self, help: impl Into<String>) -> Report {
-        self.help = Some(help.into());
+        self.help = Some(shortened(&help.into(), MESSAGE));
         self
     }
 
@@ -73,7 +92,7 @@ impl Report {
         let start = floor_char(&source.text, (place.start as usize).min(length));
         let end = (place.end as usize).clamp(start, length).min(start + LINE);
         let end = floor_char(&source.text, end);
-        self.position = Some(position(&source.text, start));
+        self.position = Some(source.position(start));
         self.label = Some(LabeledSpan::new(None, start, end - start));
         self.source = Some(source.clone());
         self.name.clone_from(&source.name);
@@ -82,7 +101,7 @@ impl Report {
 
     /// With where the place was called from.
     pub(crate) fn called_from(mut self, source: &Source, place: Place) -> Report {
-        let (line, column) = position(&source.text, floor_char(&source.text, place.start as usize));
+        let (line, column) = source.position(place.start as usize);
         self.trace.push(format!("{}:{line}:{column}", source.name));
         self
     }
@@ -107,6 +126,9 @@ impl Report {
         self.position
     }
 }
+
+/// Characters of a message or a hint: they may quote what a stranger wrote.
+const MESSAGE: usize = 1000;
 
 /// Bytes of a line beyond which only the part around a place is shown.
 const LINE: usize = 160;
@@ -135,7 +157,7 @@ impl SourceCode for Source {
                 &self.text.as_bytes()[start..end],
                 (start, end - start).into(),
             );
-            let (line, column) = position(&self.text, start);
+            let (line, column) = self.position(start);
             let name = self.name.clone();
             return Ok(Box::new(MietteSpanContents::new_named(
                 name,
@@ -155,24 +177,6 @@ impl SourceCode for Source {
             count,
         )))
     }
-}
-
-/// The largest boundary between characters that is not beyond `at`.
-fn floor_char(text: &str, at: usize) -> usize {
-    (0..=at.min(text.len()))
-        .rev()
-        .find(|&i| text.is_char_boundary(i))
-        .unwrap_or(0)
-}
-
-/// Line and column of a byte, 1-based.
-pub(crate) fn position(text: &str, at: usize) -> (usize, usize) {
-    let before = &text[..at];
-    let line_start = before.rfind('\n').map_or(0, |i| i + 1);
-    (
-        before.matches('\n').count() + 1,
-        before[line_start..].chars().count() + 1,
-    )
 }
 
 impl fmt::Display for Report {
@@ -208,14 +212,30 @@ impl Diagnostic for Report {
     }
 }
 
-/// The name among `names` that `given` was most likely meant to be.
+/// Characters of the longest name that is compared with others: comparing takes as many steps as one is long times the other.
+const COMPARED: usize = 40;
+/// Names that are compared at most: a stranger's file may hold any number of them.
+const CANDIDATES: usize = 4096;
+
+/// The name among `names` that `given` was most likely meant to be. Takes a limited time, whatever the names.
 pub fn nearest<'a>(given: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let lower = given.to_lowercase();
-    let scored = names.into_iter().map(|name| {
-        let plain = |s: &str| s.replace('_', "").to_lowercase();
-        let same = plain(name) == plain(given);
-        let distance = strsim::osa_distance(&lower, &name.to_lowercase());
-        (if same { 0 } else { distance }, name)
+    let is_short = |name: &str| name.len() <= 4 * COMPARED && name.chars().count() <= COMPARED;
+    if !is_short(given) {
+        return None;
+    }
+    let plain = |s: &str| s.replace('_', "").to_lowercase();
+    let (lower, bare) = (given.to_lowercase(), plain(given));
+    let candidates = names
+        .into_iter()
+        .take(CANDIDATES)
+        .filter(|name| is_short(name));
+    let scored = candidates.map(|name| {
+        let distance = if plain(name) == bare {
+            0
+        } else {
+            strsim::osa_distance(&lower, &name.to_lowercase())
+        };
+        (distance, name)
     });
     let (distance, name) = scored.min()?;
     let allowed = (given.chars().count().max(name.chars().count()) / 3).clamp(1, 3);
@@ -230,7 +250,8 @@ pub(crate) fn suggestion<'a>(
     if let Some(name) = nearest(given, names.clone()) {
         return Some(format!("did you mean `{name}`?"));
     }
-    let all: Vec<&str> = names.into_iter().collect();
+    // one more than are listed says that there are too many
+    let all: Vec<&str> = names.into_iter().take(17).collect();
     match all.as_slice() {
         [] => None,
         [one] => Some(format!("there is only `{one}`")),

@@ -1,12 +1,19 @@
 //! The JSON twin: from a scene to JSON and back nothing changes.
 
+use glam::Vec3;
+use proptest::prelude::*;
 use std::collections::HashMap;
 use zeroset_field::catalogue::Dimension;
 use zeroset_field::catalogue::entries::catalogue;
 use zeroset_field::field::{Field, Node};
+use zeroset_field::placement::Placement;
+use zeroset_scene::camera::Lens;
 use zeroset_scene::json::{expand, to_text};
+use zeroset_scene::light::Source;
 use zeroset_scene::load::{Language, Loaded, Options, load_text};
+use zeroset_scene::material::Pattern;
 use zeroset_scene::scene::{Object, Scene};
+use zeroset_scene::settings::{March, Occlusion, Shadow};
 
 fn load(name: &str, text: &str, language: Language) -> Loaded {
     match load_text(name, text, language, None, &Options::default()) {
@@ -96,8 +103,19 @@ fn same(a: &Field, b: &Field, pairs: &mut HashMap<usize, usize>) {
 
 /// To JSON and back, and that nothing changed.
 fn round_trip(scene: &Scene) -> String {
-    let text = to_text(&expand(scene));
+    let text = to_text(&expand(scene).unwrap());
     let again = load("scene.json", &text, Language::Json).scene;
+    assert_same(scene, &again);
+    assert_eq!(
+        text,
+        to_text(&expand(&again).unwrap()),
+        "written again, it is the same text"
+    );
+    text
+}
+
+/// Whether two scenes are the same, to the bit.
+fn assert_same(scene: &Scene, again: &Scene) {
     let mut pairs = HashMap::new();
     assert_eq!(scene.objects.len(), again.objects.len());
     for (a, b) in scene.objects.iter().zip(&again.objects) {
@@ -113,12 +131,14 @@ fn round_trip(scene: &Scene) -> String {
     assert_eq!(scene.sky, again.sky);
     assert_eq!(scene.camera, again.camera);
     assert_eq!(scene.settings, again.settings);
-    assert_eq!(
-        text,
-        to_text(&expand(&again)),
-        "written again, it is the same text"
-    );
-    text
+    // equality of floats takes -0 for 0
+    let bits = |s: &Scene| {
+        format!(
+            "{:?}",
+            (&s.materials, &s.lights, &s.sky, &s.camera, &s.settings)
+        )
+    };
+    assert_eq!(bits(scene), bits(again));
 }
 
 const ALL: &str = r##"
@@ -220,7 +240,10 @@ fn what_is_left_out() {
         Language::Json,
     );
     let star = load("hand.star", "show(sphere())", Language::Starlark).scene;
-    assert_eq!(to_text(&expand(&loaded.scene)), to_text(&expand(&star)));
+    assert_eq!(
+        to_text(&expand(&loaded.scene).unwrap()),
+        to_text(&expand(&star).unwrap())
+    );
     // colours as text, angles in degrees or radians, a camera that looks at something
     let text = r##"{
         "zeroset": 1,
@@ -255,5 +278,182 @@ fn reach_of_occlusion() {
             let again = load("reach.json", &json, Language::Json).scene;
             assert_eq!(again.settings.occlusion, scene.settings.occlusion);
         }
+    }
+}
+
+/// What the language makes can be written and read, at the edges of its ranges too.
+#[test]
+fn of_scripts_at_the_edges() {
+    for script in [
+        "camera(lens = orthographic(1e-6))",
+        "camera(lens = orthographic(1e6))",
+        "camera(eye = (1e30, 0, 0))",
+        "camera(near = 1e-6, far = 1e9)",
+        "camera(fov = 1)\nshow(sphere().move(x = 1e12))",
+        "camera(fov = 170)\nshow(sphere().move(x = -3e20))",
+        "camera(direction = (1e-300, 1e-300, 0), up = (1e-200, 0, 1e-200))",
+        "sun(direction = (1e-200, 0, 0))",
+        "sun(direction = (1e-320, 1e-320, 0))",
+        "sun(direction = (1e200, -1e200, 1e-200))",
+        "sun(direction = (1, 1e-40, 0), strength = 1e6)",
+        "point_light((1e9, 0, 0), strength = 1e6, color = (1, 1, 1))",
+        "show(sphere(), gradient(start = (1e8, 0, 0), end = (-1e8, 1e-30, 0)))",
+        "show(sphere(), stripes(\"red\", \"blue\", (1e-300, 0, 1e-300), 1e-6))",
+        "show(sphere(), checker(\"red\", \"blue\", 1e6))",
+        "sky(top = \"#000\", ambient = 10)",
+        "show(sphere(1e-6))",
+        "show(sphere().scale(1e-6).turn(x = 1e-300))",
+        "show(box(1).twist(1e-9))",
+        "show(formula(\"x*1e30 + 1e-300\", slope = 1e30, bounds = box(1e3)))",
+    ] {
+        let text = format!("{script}\nshow(sphere(), name = \"\\u{1}\\u{202e}\\\"\")");
+        match load_text(
+            "edge.star",
+            &text,
+            Language::Starlark,
+            None,
+            &Options::default(),
+        ) {
+            Ok(loaded) => drop(round_trip(&loaded.scene)),
+            // refused, with what is wrong, rather than written as something else
+            Err(failed) => {
+                let message = failed.report.message().to_string();
+                assert!(!message.contains("bug"), "{script}: {message}");
+                println!("{script}: {message}");
+            }
+        }
+    }
+    let star = |text: &str| load("a.star", text, Language::Starlark).scene;
+    let Source::Directional { direction } =
+        star("sun(direction = (1e-200, 0, 0))\nshow(sphere())").lights[0].source
+    else {
+        panic!("a sun")
+    };
+    assert_eq!(direction.to_array(), [1.0, 0.0, 0.0]);
+    let far = star("show(sphere(1e9).move(x = 1e12))").camera.far;
+    assert!(far > 1e9, "{far}");
+    round_trip(&star("show(sphere(1e6).move(x = 1e12))"));
+}
+
+/// Numbers that are likely to be trouble.
+fn nasty() -> impl Strategy<Value = f32> {
+    prop_oneof![
+        Just(0.0),
+        Just(-0.0),
+        Just(1.0),
+        Just(1e-6),
+        Just(1e6),
+        Just(1e9),
+        Just(0.1),
+        Just(f32::MIN_POSITIVE),
+        Just(f32::from_bits(1)),
+        Just(f32::MAX),
+        Just(f32::INFINITY),
+        Just(f32::NAN),
+        any::<f32>(),
+        -10.0..10.0_f32,
+    ]
+}
+
+/// A scene of which some numbers are replaced.
+fn damaged(numbers: &[(u8, f32)], wide: f64, turn: [f64; 3]) -> Scene {
+    let mut scene = load("all.star", ALL, Language::Starlark).scene;
+    for &(what, x) in numbers {
+        let material = usize::from(what) % scene.materials.len();
+        match what % 24 {
+            0 => scene.camera.eye.x = x,
+            1 => scene.camera.near = x,
+            2 => scene.camera.far = x,
+            3 => scene.camera.lens = Lens::Orthographic { height: x },
+            4 => scene.camera.lens = Lens::Pinhole { fov: x },
+            5 => scene.camera.axes.x_axis.x = x,
+            6 => scene.sky.ambient = x,
+            7 => scene.sky.horizon.z = x,
+            8 => scene.lights[0].radiance.y = x,
+            9 => {
+                scene.lights[0].source = Source::Directional {
+                    direction: Vec3::new(x, 1.0, 0.0).normalize(),
+                }
+            }
+            10 => {
+                scene.lights[0].source = Source::Directional {
+                    direction: Vec3::new(0.0, x, 1.0),
+                }
+            }
+            11 => {
+                scene.lights[0].source = Source::Point {
+                    position: Vec3::splat(x),
+                }
+            }
+            12 => scene.lights[0].shadow = Shadow::Soft { sharpness: x },
+            13 => scene.settings.exposure = x,
+            14 => scene.settings.footprint = x,
+            15 => scene.settings.march = March::Relaxed { omega: x },
+            16 => scene.objects[0].occlusion = Some(Occlusion::Hemisphere { rays: 3, reach: x }),
+            17 => scene.materials[material].roughness = x,
+            18 => scene.materials[material].emission.x = x,
+            19 => scene.materials[material].shininess = x,
+            20 => {
+                scene.materials[material].pattern = Pattern::Gradient {
+                    colours: [Vec3::ONE, Vec3::splat(x)],
+                    from: Vec3::splat(x),
+                    to: Vec3::ZERO,
+                }
+            }
+            21 => {
+                scene.materials[material].pattern = Pattern::Stripes {
+                    colours: [Vec3::ONE; 2],
+                    direction: Vec3::new(x, x, 0.0).normalize_or_zero(),
+                    size: x.abs(),
+                }
+            }
+            22 => scene.objects[0].material = what.into(),
+            _ => {
+                let ball = scene.objects[0].field.clone();
+                let placed = ball.place(Placement::moved([wide, f64::from(x), turn[0]]));
+                let field = placed.and_then(|f| f.place(Placement::scaled(turn[1])));
+                if let Ok(field) = field {
+                    scene.objects[0].field = field;
+                }
+            }
+        }
+    }
+    scene
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
+
+    /// Whatever a program puts into a scene: it can be written and read without any change, or it is refused.
+    #[test]
+    fn of_any_numbers(numbers in prop::collection::vec((any::<u8>(), nasty()), 1..4), wide in any::<f64>(), turn in any::<[f64; 3]>()) {
+        let scene = damaged(&numbers, wide, turn);
+        match expand(&scene) {
+            Err(error) => prop_assert!(error.to_string().contains("cannot be written"), "{}", error),
+            Ok(value) => {
+                let text = to_text(&value);
+                prop_assert!(!text.contains("null"), "{}", text);
+                let again = load_text("scene.json", &text, Language::Json, None, &Options::default());
+                let again = again.map_err(|f| TestCaseError::fail(format!("{numbers:?}: {}", f.report)))?;
+                assert_same(&scene, &again.scene);
+            }
+        }
+    }
+
+    /// Numbers in the ranges of the language are never refused.
+    #[test]
+    fn of_good_numbers(
+        eye in prop::array::uniform3(-1e9..1e9_f32), height in 1e-6..1e6_f32, far in 1.0..1e30_f32, sharp in 1.0..1000.0_f32,
+        light in prop::array::uniform3(0.0..1e6_f32), offset in prop::array::uniform3(-1e30..1e30), scale in 1e-6..1e6,
+    ) {
+        let mut scene = load("all.star", ALL, Language::Starlark).scene;
+        scene.camera.eye = eye.into();
+        scene.camera.far = far;
+        scene.camera.lens = Lens::Orthographic { height };
+        scene.lights[0].radiance = light.into();
+        scene.lights[0].shadow = Shadow::Soft { sharpness: sharp };
+        let moved = scene.objects[0].field.place(Placement::moved(offset)).unwrap();
+        scene.objects[0].field = moved.place(Placement::scaled(scale)).unwrap();
+        round_trip(&scene);
     }
 }

@@ -117,10 +117,12 @@ fn survives(text: &str, language: Language) -> Result<(), TestCaseError> {
     );
     match result {
         Ok(loaded) => {
-            let json = to_text(&expand(&loaded.scene));
+            let written =
+                expand(&loaded.scene).map_err(|e| TestCaseError::fail(format!("{e}: {text}")))?;
+            let json = to_text(&written);
             let again = load_text("random", &json, Language::Json, None, &options());
             let again = again.map_err(|f| TestCaseError::fail(format!("{}: {text}", f.report)))?;
-            prop_assert_eq!(json, to_text(&expand(&again.scene)));
+            prop_assert_eq!(json, to_text(&expand(&again.scene).unwrap()));
         }
         Err(failed) => {
             let shown = format!("{:?}", miette::Report::new(*failed.report));
@@ -141,7 +143,7 @@ proptest! {
     #[test]
     fn damaged_json(scene in 0..SCENES.len(), changes in prop::collection::vec((any::<usize>(), any::<usize>(), any::<u8>(), any::<usize>()), 0..4)) {
         let loaded = load_text("random", SCENES[scene], Language::Starlark, None, &options()).unwrap();
-        survives(&damaged(&to_text(&expand(&loaded.scene)), &changes), Language::Json)?;
+        survives(&damaged(&to_text(&expand(&loaded.scene).unwrap()), &changes), Language::Json)?;
     }
 
     #[test]

@@ -30,7 +30,7 @@ fn all_load() {
             Err(failed) => failures.push(format!("{:?}", miette::Report::new(*failed.report))),
             Ok(loaded) => {
                 assert!(loaded.scene.field().unwrap().is_some());
-                let text = to_text(&expand(&loaded.scene));
+                let text = to_text(&expand(&loaded.scene).unwrap());
                 let folder = path.parent();
                 match load_text(
                     "scene.json",
@@ -40,7 +40,12 @@ fn all_load() {
                     &Options::default(),
                 ) {
                     Ok(again) => {
-                        assert_eq!(text, to_text(&expand(&again.scene)), "{}", path.display())
+                        assert_eq!(
+                            text,
+                            to_text(&expand(&again.scene).unwrap()),
+                            "{}",
+                            path.display()
+                        )
                     }
                     Err(failed) => failures.push(format!("{}: {}", path.display(), failed.report)),
                 }

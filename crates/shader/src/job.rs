@@ -270,12 +270,18 @@ fn tables(scene: &Scene, mut frame: Frame) -> (Vec<[f32; 4]>, Frame) {
     let fallback = material::Material::default();
     let mut image = table.len() + (scene.materials.len() + 1) * rows::<Material>();
     let mut images = Vec::new();
+    // materials that show the same image share its rows
+    let mut places = HashMap::new();
     for material in scene.materials.iter().chain([&fallback]) {
-        push(&mut table, material_row(material, image));
+        let mut place = image;
         if let Pattern::Triplanar { image: picture, .. } = &material.pattern {
-            image += picture.pixels.len();
-            images.push(picture);
+            place = *places.entry(Arc::as_ptr(picture)).or_insert_with(|| {
+                images.push(picture);
+                image += picture.pixels.len();
+                place
+            });
         }
+        push(&mut table, material_row(material, place));
     }
     for picture in images {
         table.extend(picture.pixels.iter().map(|c| [c.x, c.y, c.z, 0.0]));

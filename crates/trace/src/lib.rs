@@ -22,4 +22,4 @@ mod shadow;
 mod simd;
 mod tile;
 
-pub use renderer::{CpuRenderer, Picture};
+pub use renderer::{CpuRenderer, Picture, sums};

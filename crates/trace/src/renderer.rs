@@ -2,7 +2,7 @@
 
 use crate::job::Job;
 use crate::resolve::{self, ACCUMULATORS};
-use crate::tile::{Area, HEIGHT, Scratch};
+use crate::tile::{Area, HEIGHT, Scratch, WIDTH};
 use fearless_simd::{Level, dispatch};
 use rayon::ThreadPool;
 use rayon::prelude::*;
@@ -14,7 +14,7 @@ use zeroset_field::bounds::Aabb;
 use zeroset_field::catalogue::entries::catalogue;
 use zeroset_field::field::Field;
 use zeroset_field::program::{Limits, Operation, Program};
-use zeroset_scene::film::{Film, Plane};
+use zeroset_scene::film::{Film, Plane, SUMS};
 use zeroset_scene::material::Pattern;
 use zeroset_scene::render::{Evaluations, Frame, Observer, RenderError, Renderer, Statistics};
 use zeroset_scene::scene::Scene;
@@ -28,6 +28,7 @@ pub struct CpuRenderer {
     pool: ThreadPool,
     level: Level,
     limits: Limits,
+    sums: u64,
 }
 
 impl CpuRenderer {
@@ -49,6 +50,7 @@ impl CpuRenderer {
             pool,
             level: Level::new(),
             limits: Limits::default(),
+            sums: SUMS,
         })
     }
 
@@ -60,6 +62,11 @@ impl CpuRenderer {
     /// With other limits on what the scene may compile to.
     pub fn with_limits(self, limits: Limits) -> CpuRenderer {
         CpuRenderer { limits, ..self }
+    }
+
+    /// With another number of bytes for the sums of samples that are kept at a time; the picture does not depend on it.
+    pub fn with_sums(self, sums: u64) -> CpuRenderer {
+        CpuRenderer { sums, ..self }
     }
 
     /// Threads.
@@ -86,7 +93,10 @@ impl CpuRenderer {
         observer: &dyn Observer,
     ) -> Result<Statistics, RenderError> {
         let began = Instant::now();
-        let run = Run::new(picture, film, self.level, observer);
+        let run = Run {
+            sums: self.sums,
+            ..Run::new(picture, film, self.level, observer)
+        };
         let statistics = self.pool.install(|| run.all(film));
         if run.cancelled.into_inner() {
             return Err(RenderError::Cancelled);
@@ -101,9 +111,18 @@ impl CpuRenderer {
 
 impl Renderer for CpuRenderer {
     fn render(&self, scene: &Scene, observer: &dyn Observer) -> Result<Frame, RenderError> {
+        self.render_planes(scene, &Plane::ALL, observer)
+    }
+
+    fn render_planes(
+        &self,
+        scene: &Scene,
+        planes: &[Plane],
+        observer: &dyn Observer,
+    ) -> Result<Frame, RenderError> {
         let picture = self.prepare(scene)?;
         let [width, height] = scene.settings.size;
-        let mut film = Film::new(width, height);
+        let mut film = Film::with(width, height, planes);
         let statistics = self.render_into(&picture, &mut film, observer)?;
         Ok(Frame { film, statistics })
     }
@@ -203,6 +222,8 @@ struct Run<'a> {
     level: Level,
     observer: &'a dyn Observer,
     cancelled: AtomicBool,
+    /// Bytes of sums at a time.
+    sums: u64,
 }
 
 impl<'a> Run<'a> {
@@ -221,29 +242,20 @@ impl<'a> Run<'a> {
             level,
             observer,
             cancelled,
+            sums: SUMS,
         }
     }
 
     fn all(&self, film: &mut Film) -> Statistics {
-        let tiles = Area::count(self.size);
-        let filtered = self.job.is_filtered();
-        let mut sums = vec![0.0; if filtered { tiles * ACCUMULATORS } else { 0 }];
         let mut bands = bands(film);
-        let done: Done = if filtered {
-            let tiles = sums.par_chunks_exact_mut(ACCUMULATORS).enumerate();
-            tiles.map(|(k, sums)| self.tile(k, sums, &bands)).sum()
+        let done: Done = if self.job.is_filtered() {
+            self.filtered(&mut bands)
         } else {
-            (0..tiles)
+            (0..Area::count(self.size))
                 .into_par_iter()
                 .map(|k| self.tile(k, &mut [], &bands))
                 .sum()
         };
-        if filtered && !self.cancelled.load(Ordering::Relaxed) {
-            bands.par_iter_mut().enumerate().for_each(|(k, band)| {
-                let band = band.get_mut().unwrap_or_else(PoisonError::into_inner);
-                resolve::band(k, &sums, self.size, band);
-            });
-        }
         let (rays, hits, evaluations) = (done.rays, done.hits, done.evaluations);
         Statistics {
             rays,
@@ -251,6 +263,44 @@ impl<'a> Run<'a> {
             evaluations,
             ..Statistics::default()
         }
+    }
+
+    /// Renders all tiles, some rows of them at a time so that their sums take limited memory, and filters what is complete.
+    /// The order in which a pixel's sums are added is that of the tiles, however many rows there are at a time.
+    fn filtered(&self, bands: &mut [Band<'_>]) -> Done {
+        let across = (self.size[0] as usize).div_ceil(WIDTH);
+        let (row, down) = (across * ACCUMULATORS, bands.len());
+        let step = rows(self.size, self.sums);
+        // two rows stay for the filter, which reaches from a row into the next one
+        let mut sums = vec![0.0; (step + 2).min(down) * row];
+        // the first row of tiles that has sums, and the first band that is not filtered yet
+        let (mut first, mut open) = (0, 0);
+        let mut done = Done::default();
+        for from in (0..down).step_by(step) {
+            let to = (from + step).min(down);
+            let kept = from.saturating_sub(2);
+            sums.copy_within((kept - first) * row..(from - first) * row, 0);
+            first = kept;
+            let new = &mut sums[(from - first) * row..(to - first) * row];
+            let tiles = new.par_chunks_exact_mut(ACCUMULATORS).enumerate();
+            let tile = |(k, sums): (usize, &mut [f32])| {
+                sums.fill(0.0);
+                self.tile(from * across + k, sums, bands)
+            };
+            done = [done, tiles.map(tile).sum()].into_iter().sum();
+            // the last row of tiles still gets samples from the next one
+            let complete = if to == down { down } else { to - 1 };
+            let filter = |(k, band): (usize, &mut Band<'_>)| {
+                let band = band.get_mut().unwrap_or_else(PoisonError::into_inner);
+                resolve::band(open + k, &sums, first, self.size, band);
+            };
+            bands[open..complete]
+                .par_iter_mut()
+                .enumerate()
+                .for_each(filter);
+            open = complete;
+        }
+        done
     }
 
     /// Renders tile number `k`.
@@ -275,6 +325,22 @@ impl<'a> Run<'a> {
         self.observer.advance(done.rays, total);
         done
     }
+}
+
+/// Rows of tiles that are rendered at a time for their sums, and those of the two rows before them, to take so many bytes.
+fn rows(size: [u32; 2], bytes: u64) -> usize {
+    let across = (size[0] as usize).div_ceil(WIDTH);
+    let down = (size[1] as usize).div_ceil(HEIGHT);
+    let fits = bytes as usize / (4 * across * ACCUMULATORS).max(1);
+    fits.saturating_sub(2).clamp(1, down.max(1))
+}
+
+/// Bytes of the sums of samples that are kept at a time for a picture of this size.
+pub fn sums(size: [u32; 2]) -> u64 {
+    let across = u64::from(size[0]).div_ceil(WIDTH as u64);
+    let down = u64::from(size[1]).div_ceil(HEIGHT as u64);
+    let rows = (rows(size, SUMS) as u64 + 2).min(down);
+    rows * across * 4 * ACCUMULATORS as u64
 }
 
 /// What tiles took. Sums of whole numbers: their order does not matter.

@@ -88,8 +88,15 @@ fn add<S: Simd, const TAPS: usize>(
     );
 }
 
-/// Writes colour and coverage of band number `k` of a picture from the sums of all its tiles.
-pub(crate) fn band(k: usize, sums: &[f32], size: [u32; 2], band: &mut [(Plane, &mut [f32])]) {
+/// Writes colour and coverage of band number `k` of a picture from the sums of the tiles around it; `sums` begin with those
+/// of row number `first` of tiles.
+pub(crate) fn band(
+    k: usize,
+    sums: &[f32],
+    first: usize,
+    size: [u32; 2],
+    band: &mut [(Plane, &mut [f32])],
+) {
     let (width, height) = (size[0] as usize, size[1] as usize);
     let (across, down) = (width.div_ceil(WIDTH), height.div_ceil(HEIGHT));
     let mut row = [const { [0.0f32; WIDTH] }; CHANNELS];
@@ -104,7 +111,7 @@ pub(crate) fn band(k: usize, sums: &[f32], size: [u32; 2], band: &mut [(Plane, &
                     continue;
                 }
                 for tx in tile.saturating_sub(1)..(tile + 2).min(across) {
-                    let sums = &sums[(ty * across + tx) * ACCUMULATORS..][..ACCUMULATORS];
+                    let sums = &sums[((ty - first) * across + tx) * ACCUMULATORS..][..ACCUMULATORS];
                     // pixel x of this tile is number x + shift in that tile's row
                     let shift = (tile * WIDTH + MARGIN) as isize - (tx * WIDTH) as isize;
                     let from = (-shift).max(0) as usize;

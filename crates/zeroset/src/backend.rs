@@ -8,6 +8,7 @@ use std::cell::OnceCell;
 use std::cell::RefCell;
 #[cfg(feature = "gpu")]
 use zeroset_gpu::{Choice, GpuRenderer};
+use zeroset_scene::film::Plane;
 use zeroset_scene::render::{Frame, Observer, RenderError, Renderer};
 use zeroset_scene::scene::Scene;
 use zeroset_trace::CpuRenderer;
@@ -99,6 +100,7 @@ impl<'a> Engine<'a> {
     pub(crate) fn render(
         &self,
         scene: &Scene,
+        planes: &[Plane],
         observer: &dyn Observer,
         restart: &dyn Fn(),
     ) -> Result<(Frame, Used), RenderError> {
@@ -106,7 +108,7 @@ impl<'a> Engine<'a> {
         {
             let mut gpu = self.gpu.borrow_mut();
             if let Some(renderer) = &*gpu {
-                match renderer.render(scene, observer) {
+                match renderer.render_planes(scene, planes, observer) {
                     Err(error @ RenderError::Device { .. }) if self.falls_back => {
                         self.console
                             .note(format_args!("{error}\nRendering on the CPU."));
@@ -120,7 +122,8 @@ impl<'a> Engine<'a> {
         }
         #[cfg(not(feature = "gpu"))]
         let _ = (restart, self.console);
-        Ok((self.cpu()?.render(scene, observer)?, Used::Cpu))
+        let frame = self.cpu()?.render_planes(scene, planes, observer)?;
+        Ok((frame, Used::Cpu))
     }
 
     fn cpu(&self) -> Result<&CpuRenderer, RenderError> {
@@ -202,10 +205,12 @@ mod tests {
         let loaded = load_text("a.star", text, Language::Starlark, None, &options);
         let scene = loaded.expect("a valid scene").scene;
         let restarts = Cell::new(0);
-        let result = engine.render(&scene, &Silent, &|| restarts.set(restarts.get() + 1));
+        let result = engine.render(&scene, &Plane::ALL, &Silent, &|| {
+            restarts.set(restarts.get() + 1)
+        });
         if result.is_ok() {
             // the GPU is not asked again
-            let again = engine.render(&scene, &Silent, &|| restarts.set(9));
+            let again = engine.render(&scene, &Plane::ALL, &Silent, &|| restarts.set(9));
             assert_eq!(again.map(|(_, used)| used), Ok(Used::Cpu));
         }
         Some((result, restarts.get()))

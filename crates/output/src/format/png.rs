@@ -1,7 +1,7 @@
 //! PNG: 8 or 16 bits a channel, sRGB, with notes in text chunks.
 
 use super::{Notes, SOFTWARE};
-use crate::picture::Picture;
+use crate::picture::Rows;
 use crate::tone;
 use ::png::{BitDepth, ColorType, Encoder, EncodingError, SrgbRenderingIntent};
 use std::io::{self, Write};
@@ -16,11 +16,16 @@ pub enum Depth {
     Sixteen,
 }
 
-/// Writes a picture.
+/// Writes a picture, row by row.
 ///
 /// # Errors
 /// What the writer gives; a picture without pixels or with a side of more than 2^31 - 1, which PNG cannot hold.
-pub fn write(writer: impl Write, picture: &Picture, depth: Depth, notes: &Notes) -> io::Result<()> {
+pub fn write(
+    writer: impl Write,
+    picture: &impl Rows,
+    depth: Depth,
+    notes: &Notes,
+) -> io::Result<()> {
     let mut writer = Faithful {
         writer,
         failed: None,
@@ -29,7 +34,7 @@ pub fn write(writer: impl Write, picture: &Picture, depth: Depth, notes: &Notes)
     writer.failed.map_or(encoded, Err)
 }
 
-fn encode(writer: impl Write, picture: &Picture, depth: Depth, notes: &Notes) -> io::Result<()> {
+fn encode(writer: impl Write, picture: &impl Rows, depth: Depth, notes: &Notes) -> io::Result<()> {
     let mut encoder = Encoder::new(writer, picture.width(), picture.height());
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(match depth {
@@ -58,9 +63,11 @@ fn encode(writer: impl Write, picture: &Picture, depth: Depth, notes: &Notes) ->
     let mut writer = encoder.write_header().map_err(plain)?;
     let mut stream = writer.stream_writer().map_err(plain)?;
     let mut line = Vec::with_capacity(picture.width() as usize * 6);
-    for (y, row) in (0..).zip(picture.pixels().chunks_exact(picture.width() as usize)) {
+    let mut row = Vec::new();
+    for y in 0..picture.height() {
+        picture.row(y, &mut row);
         line.clear();
-        for (x, pixel) in (0..).zip(row) {
+        for (x, pixel) in (0..).zip(&row) {
             for &channel in pixel {
                 match depth {
                     Depth::Eight => line.push(tone::quantise8(channel, x, y)),

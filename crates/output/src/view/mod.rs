@@ -33,6 +33,15 @@ pub struct View<'a> {
     pub objects: &'a [String],
 }
 
+/// The planes that a film must have for the view of one of them.
+pub fn needed(plane: Plane) -> &'static [Plane] {
+    match plane {
+        // a residual is one of a hit
+        Plane::Residual => &[Plane::Residual, Plane::Depth],
+        other => &Plane::ALL[other as usize..][..1],
+    }
+}
+
 impl View<'_> {
     /// Shows a film's plane; of a film that does not have it, [`NOTHING`].
     pub fn of(&self, film: &Film) -> Picture {

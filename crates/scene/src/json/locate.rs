@@ -1,31 +1,50 @@
-//! Where in a JSON text a value stands.
+//! Where in a JSON text values stand. Every question takes one pass over the text.
 
 use super::Step;
 use std::ops::Range;
 
 /// The bytes of the value at the end of a path, or of the last one on the way that is there. The text must be JSON.
 pub(super) fn locate(text: &str, path: &[Step]) -> Range<usize> {
-    let mut scanner = Scanner {
-        text: text.as_bytes(),
-        at: 0,
-    };
-    let mut found = scanner.clone().value();
+    let mut scanner = Scanner::new(text);
+    scanner.space();
     for step in path {
-        match scanner.enter(step) {
-            Some(range) => found = range,
-            None => break,
+        let outer = scanner.at;
+        if !scanner.enter(step) {
+            scanner.at = outer;
+            break;
         }
     }
-    found
+    scanner.value()
 }
 
-#[derive(Clone)]
+/// Where each item begins of the list that is a member of the outermost object.
+pub(super) fn items(text: &str, key: &str) -> Vec<u32> {
+    let mut scanner = Scanner::new(text);
+    let mut starts = Vec::new();
+    if !scanner.enter(&Step::Key(key.to_string())) || scanner.peek() != b'[' {
+        return starts;
+    }
+    scanner.at += 1;
+    while scanner.has_more() {
+        starts.push(scanner.at as u32);
+        scanner.value();
+    }
+    starts
+}
+
 struct Scanner<'t> {
     text: &'t [u8],
     at: usize,
 }
 
 impl Scanner<'_> {
+    fn new(text: &str) -> Scanner<'_> {
+        Scanner {
+            text: text.as_bytes(),
+            at: 0,
+        }
+    }
+
     fn peek(&self) -> u8 {
         self.text.get(self.at).copied().unwrap_or(0)
     }
@@ -34,6 +53,16 @@ impl Scanner<'_> {
         while self.peek().is_ascii_whitespace() {
             self.at += 1;
         }
+    }
+
+    /// Goes to the next item or member, if there is one.
+    fn has_more(&mut self) -> bool {
+        self.space();
+        if self.peek() == b',' {
+            self.at += 1;
+            self.space();
+        }
+        !matches!(self.peek(), b']' | b'}' | 0)
     }
 
     /// Passes a value and gives its bytes.
@@ -65,63 +94,61 @@ impl Scanner<'_> {
             }
             self.at += 1;
         }
+        if self.at == start {
+            // no value: what is not JSON is passed too
+            self.at += 1;
+        }
         let length = self.text.len();
         start.min(length)..self.at.min(length)
     }
 
-    /// Passes a string and gives what it says.
-    fn string(&mut self) -> String {
+    /// Passes a string and gives its bytes, quotes included.
+    fn string(&mut self) -> &[u8] {
         let start = self.at;
         self.at += 1;
         while self.at < self.text.len() && self.peek() != b'"' {
             self.at += if self.peek() == b'\\' { 2 } else { 1 };
         }
         self.at = (self.at + 1).min(self.text.len());
-        serde_json::from_slice(&self.text[start..self.at]).unwrap_or_default()
+        &self.text[start..self.at]
     }
 
-    /// Goes to a member of the value that begins here and gives its bytes; the scanner then stands at its beginning.
-    fn enter(&mut self, step: &Step) -> Option<Range<usize>> {
+    /// Goes to the beginning of a member of the value that begins here, if there is such a member.
+    fn enter(&mut self, step: &Step) -> bool {
         self.space();
-        let open = self.peek();
-        if open
-            != if matches!(step, Step::Key(_)) {
-                b'{'
-            } else {
-                b'['
-            }
-        {
-            return None;
+        let open = match step {
+            Step::Key(_) => b'{',
+            Step::Index(_) => b'[',
+        };
+        if self.peek() != open {
+            return false;
         }
         self.at += 1;
         let mut index = 0;
-        loop {
-            self.space();
-            if matches!(self.peek(), b']' | b'}' | 0) {
-                return None;
-            }
+        while self.has_more() {
             let hit = match step {
                 Step::Key(wanted) => {
                     let name = self.string();
+                    // most keys are plain, and need not be decoded to be told apart
+                    let plain = name.len() == wanted.len() + 2
+                        && &name[1..name.len() - 1] == wanted.as_bytes();
+                    let hit = plain
+                        || name.contains(&b'\\')
+                            && serde_json::from_slice::<String>(name).is_ok_and(|n| n == *wanted);
                     self.space();
                     self.at += 1;
-                    name == *wanted
+                    hit
                 }
                 Step::Index(wanted) => index == *wanted,
             };
             self.space();
-            let start = self.at;
-            let range = self.value();
             if hit {
-                self.at = start;
-                return Some(range);
+                return true;
             }
-            self.space();
-            if self.peek() == b',' {
-                self.at += 1;
-            }
+            self.value();
             index += 1;
         }
+        false
     }
 }
 
@@ -129,11 +156,14 @@ impl Scanner<'_> {
 mod tests {
     use super::*;
 
+    fn key(k: &str) -> Step {
+        Step::Key(k.to_string())
+    }
+
     #[test]
     fn finds_values() {
         let text = r#" {"a": [1, {"b\"": "x,]"}, 22], "c": -1.5e3 } "#;
         let at = |path: &[Step]| &text[locate(text, path)];
-        let key = |k: &str| Step::Key(k.to_string());
         assert_eq!(at(&[key("c")]), "-1.5e3");
         assert_eq!(at(&[key("a"), Step::Index(2)]), "22");
         assert_eq!(at(&[key("a"), Step::Index(1), key("b\"")]), "\"x,]\"");
@@ -146,10 +176,35 @@ mod tests {
     }
 
     #[test]
+    fn finds_items() {
+        let text = r#" {"b": [7], "a" : [1, {"b": "x,]"},[[], 2] ,22 ], "c": 1} "#;
+        let at = |key| {
+            items(text, key)
+                .iter()
+                .map(|at| text.as_bytes()[*at as usize] as char)
+                .collect::<String>()
+        };
+        assert_eq!(at("a"), "1{[2");
+        assert_eq!((at("c"), at("d")), (String::new(), String::new()));
+    }
+
+    #[test]
     fn survives_what_is_not_json() {
-        for text in ["", "{", "[1,", "\"", "{\"a\"", "{\"a\":", "]]]", "{\"\\"] {
+        for text in [
+            "",
+            "{",
+            "[1,",
+            "\"",
+            "{\"a\"",
+            "{\"a\":",
+            "]]]",
+            "{\"\\",
+            "{,,",
+            "{\"a\":[,,",
+        ] {
             let range = locate(text, &[Step::Key("a".into()), Step::Index(1)]);
             assert!(range.end <= text.len());
+            items(text, "a");
         }
     }
 }

@@ -9,18 +9,24 @@
 //! - Angles of fields are degrees, as in the language, wherever degrees say them exactly; otherwise the name of the
 //!   parameter ends in `_radians`.
 //! - Colours are three linear numbers. A text such as `"#e8b04a"` is read as an sRGB colour.
-//! - What has a default may be left out.
+//! - What has a default may be left out. No key stands twice in an object.
+//! - `name` is a title, for messages and for what a picture says of itself. It names no file: pictures are called after the
+//!   scene's file.
+//! - Numbers are those of the scene: finite, and in the ranges that the language allows. A scene that has others (one that
+//!   a program made) cannot be written, and [`expand`] says which number it is.
 
 mod formula;
 mod locate;
+mod parse;
 mod read;
-mod valid;
+pub(crate) mod valid;
 mod write;
 
-pub use write::{expand, to_text};
+pub use write::{ExpandError, expand, to_text};
 
 pub(crate) use read::read;
 
+use crate::naming::shortened;
 use crate::report::{Place, Report, Source};
 use zeroset_field::catalogue::Unit;
 
@@ -44,7 +50,11 @@ pub(crate) struct Problem {
     path: Vec<Step>,
 }
 
-type Read<T> = Result<T, Box<Problem>>;
+/// Characters of a key, and of a path of keys, in a message.
+const KEY: usize = 60;
+const PATH: usize = 240;
+
+pub(crate) type Read<T> = Result<T, Box<Problem>>;
 
 fn problem(message: impl Into<String>) -> Box<Problem> {
     Box::new(Problem {
@@ -76,22 +86,29 @@ impl Problem {
         self.within(Step::Key(key.to_string()))
     }
 
-    /// For a person.
-    fn report(self, source: &Source) -> Report {
-        let range = locate::locate(&source.text, &self.path);
+    /// What is wrong, and of what.
+    pub(crate) fn message(&self) -> String {
         let mut path = String::new();
         for step in &self.path {
             match step {
-                Step::Key(key) if path.is_empty() => path += key,
-                Step::Key(key) => path += &format!(".{key}"),
+                Step::Key(key) => {
+                    let dot = if path.is_empty() { "" } else { "." };
+                    path += &format!("{dot}{}", shortened(key, KEY));
+                }
                 Step::Index(i) => path += &format!("[{i}]"),
             }
         }
-        let message = if path.is_empty() {
-            self.message
+        if path.is_empty() {
+            self.message.clone()
         } else {
-            format!("{path}: {}", self.message)
-        };
+            format!("{}: {}", shortened(&path, PATH), self.message)
+        }
+    }
+
+    /// For a person.
+    fn report(self, source: &Source) -> Report {
+        let range = locate::locate(&source.text, &self.path);
+        let message = self.message();
         let place = Place {
             file: 0,
             start: range.start as u32,

@@ -1,7 +1,9 @@
 //! From JSON to a scene.
 
+use super::parse::parse;
 use super::valid;
-use super::{NAME, Problem, Read, Step, VERSION, angle_name, is_angle, problem};
+use super::{KEY, NAME, Problem, Read, Step, VERSION, angle_name, is_angle, problem};
+use crate::budget::Budget;
 use crate::colour;
 use crate::draft::{Draft, View};
 use crate::framing;
@@ -10,14 +12,14 @@ use crate::language::{direction_of_word, spoken};
 use crate::light::{Light, Sky};
 use crate::limits::Limits;
 use crate::material::{Material, Pattern};
-use crate::report::{Place, Report, Source, position, suggestion};
+use crate::naming::shortened;
+use crate::report::{Report, Source, suggestion};
 use crate::scene::Object;
 use crate::settings::{Occlusion, Settings};
 use glam::{DMat3, DVec3};
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 use std::sync::Arc;
-use std::time::Instant;
 use zeroset_field::catalogue::entries::catalogue;
 use zeroset_field::catalogue::{Dimension, Info, Kind, Param, Unit};
 use zeroset_field::field::{Field, FieldError, Paint};
@@ -28,57 +30,34 @@ type Members = Map<String, Value>;
 
 /// Reads a scene into an empty draft, whose first source is its text.
 pub(crate) fn read(draft: &mut Draft, limits: &Limits) -> Result<(), Box<Report>> {
-    let start = Instant::now();
     let source = draft.sources[0].clone();
-    let value: Value =
-        serde_json::from_str(&source.text).map_err(|e| Box::new(syntax(&e, &source)))?;
+    let value = parse(&source, &mut draft.files.budget)?;
     let mut reader = Reader {
         parts: Vec::new(),
         nodes: 0,
+        visits: 0,
         materials: 0,
         limits: *limits,
-        start,
+        budget: draft.files.budget,
     };
     reader
         .scene(&value, draft, &source)
         .map_err(|p| Box::new(p.report(&source)))
 }
 
-/// A syntax error, at its line and column.
-fn syntax(error: &serde_json::Error, source: &Source) -> Report {
-    let lines = source
-        .text
-        .split_inclusive('\n')
-        .take(error.line().saturating_sub(1));
-    let start = lines.map(str::len).sum::<usize>() + error.column().saturating_sub(1);
-    let text = error.to_string();
-    let message = text
-        .rsplit_once(" at line ")
-        .map_or(text.as_str(), |(message, _)| message);
-    let place = Place {
-        file: 0,
-        start: start as u32,
-        end: start as u32 + 1,
-    };
-    let report = Report::new(format!("this is not JSON: {message}")).at(source, place);
-    match message {
-        "recursion limit exceeded" => {
-            report.with_help("put what lies deep into `parts` and refer to it")
-        }
-        _ => report,
-    }
-}
-
-/// Fields between two looks at the clock.
-const CLOCK: u64 = 256;
+/// Fields, references to parts and materials between two looks at the clock.
+const CLOCK: u64 = 64;
 
 struct Reader {
     parts: Vec<Field>,
     nodes: u64,
+    /// What was read so far, for the clock.
+    visits: u64,
     /// Number of materials.
     materials: usize,
     limits: Limits,
-    start: Instant,
+    /// For the clock; what is held is charged to that of the draft.
+    budget: Budget,
 }
 
 /// The members of an object, none of them unknown.
@@ -89,7 +68,7 @@ fn members<'v>(value: &'v Value, what: &str, names: &[&str]) -> Read<&'v Members
     for key in map.keys() {
         if !names.contains(&key.as_str()) {
             let help = suggestion(key, names.iter().copied());
-            return Err(problem(format!("{what} has no `{key}`"))
+            return Err(problem(format!("{what} has no `{}`", shortened(key, KEY)))
                 .maybe_help(help)
                 .at(key));
         }
@@ -106,6 +85,28 @@ fn list<'v>(value: &'v Value, what: &str) -> Read<&'v Vec<Value>> {
 fn number(value: &Value) -> Read<f64> {
     let x = value.as_f64().filter(|x| x.is_finite());
     x.ok_or_else(|| problem("this must be a number"))
+}
+
+/// A number that is kept in single precision: its range is one of such numbers.
+fn single(min: f32, max: f32) -> impl Fn(&Value) -> Read<f64> {
+    move |v: &Value| {
+        let x = number(v)?;
+        if (min..=max).contains(&(x as f32)) {
+            return Ok(x);
+        }
+        Err(problem(format!(
+            "this is {}, allowed is {min:e} to {max:e}",
+            spoken(x)
+        )))
+    }
+}
+
+/// A name of something.
+fn name(value: &Value, limits: &Limits) -> Read<String> {
+    let text = value.as_str();
+    let text = text.ok_or_else(|| problem("this must be a text"))?;
+    limits.check_name(text).map_err(problem)?;
+    Ok(text.to_string())
 }
 
 fn count(value: &Value, max: u32) -> Read<u32> {
@@ -161,8 +162,10 @@ const COLOURS: [&str; 7] = [
 fn colours(value: &mut Value, is_colour: bool) -> Read<()> {
     match value {
         Value::String(text) if is_colour => {
-            let srgb = colour::parse(text)
-                .map_err(|reason| problem(format!("\"{text}\" is no colour: {reason}")))?;
+            let srgb = colour::parse(text).map_err(|reason| {
+                let text = shortened(text, KEY);
+                problem(format!("\"{text}\" is no colour: {reason}"))
+            })?;
             *value = serde_json::json!(colour::linear(srgb));
         }
         Value::Array(items) => {
@@ -209,18 +212,13 @@ impl Reader {
             }
         }
         let limits = self.limits;
-        draft.name = member(map, "name", |v| {
-            v.as_str()
-                .map(String::from)
-                .ok_or_else(|| problem("this must be a text"))
-        })?;
+        draft.name = member(map, "name", |v| name(v, &limits))?;
         let materials = member(map, "materials", |v| {
             let items = list(v, "materials")?;
-            if items.len() >= usize::from(u16::MAX) {
-                return Err(problem("too many materials"));
-            }
+            valid::count_materials(items.len())?;
             let each = |(i, v)| {
-                self.material(v, draft)
+                self.tick()
+                    .and_then(|()| self.material(v, draft))
                     .map_err(|p| p.within(Step::Index(i)))
             };
             items
@@ -247,8 +245,12 @@ impl Reader {
                     items.len()
                 )));
             }
-            let each = |(i, v)| {
-                self.object(v, i, source)
+            let starts = super::locate::items(&source.text, "objects");
+            let each = |(i, v): (usize, &Value)| {
+                let start = starts.get(i).map_or(0, |at| *at as usize);
+                let (line, column) = source.position(start);
+                let place = Some((source.name.clone(), line as u32, column as u32));
+                self.object(v, i, place)
                     .map_err(|p| p.within(Step::Index(i)))
             };
             items
@@ -271,6 +273,7 @@ impl Reader {
             draft.materials.push(Material::default());
         }
         let lights = member(map, "lights", |v| {
+            valid::count_lights(list(v, "lights")?.len())?;
             let each = |(i, v)| {
                 let light: Light = data(v).map_err(|p| p.within(Step::Index(i)))?;
                 valid::light(&light).map_err(|p| p.within(Step::Index(i)))?;
@@ -307,7 +310,12 @@ impl Reader {
         Ok(material)
     }
 
-    fn object(&mut self, value: &Value, number: usize, source: &Source) -> Read<Object> {
+    fn object(
+        &mut self,
+        value: &Value,
+        number: usize,
+        place: Option<(String, u32, u32)>,
+    ) -> Read<Object> {
         let map = members(value, "an object", &["name", "field", "material", "ao"])?;
         let field = map
             .get("field")
@@ -317,21 +325,13 @@ impl Reader {
             let p = problem("a plane shape has no surface to show").at("field");
             return Err(p.help("make a solid of it with \"extrude\" or \"revolve\""));
         }
-        let name = member(map, "name", |v| {
-            v.as_str()
-                .map(String::from)
-                .ok_or_else(|| problem("this must be a text"))
-        })?;
+        let name = member(map, "name", |v| name(v, &self.limits))?;
         let material = member(map, "material", |v| self.material_number(v))?.unwrap_or(0);
         let occlusion = member(map, "ao", |v| {
             let occlusion: Occlusion = data(v)?;
             valid::occlusion(&occlusion, &self.limits)?;
             Ok(occlusion)
         })?;
-        let path = [Step::Key("objects".into()), Step::Index(number)];
-        let range = super::locate::locate(&source.text, &path);
-        let (line, column) = position(&source.text, range.start);
-        let place = Some((source.name.clone(), line as u32, column as u32));
         Ok(Object {
             name: name.unwrap_or_else(|| (number + 1).to_string()),
             field,
@@ -353,6 +353,7 @@ impl Reader {
     }
 
     fn field(&mut self, value: &Value) -> Read<Field> {
+        self.tick()?;
         let map = value
             .as_object()
             .filter(|m| m.len() == 1)
@@ -384,9 +385,6 @@ impl Reader {
                 self.limits.nodes
             )));
         }
-        if self.nodes.is_multiple_of(CLOCK) {
-            self.check_clock()?;
-        }
         let field = self.node(name, body).map_err(|p| p.at(name))?;
         if field.facts().nodes > self.limits.nodes {
             let nodes = field.facts().nodes;
@@ -401,14 +399,19 @@ impl Reader {
         Ok(field)
     }
 
-    fn check_clock(&self) -> Read<()> {
-        let seconds = self.limits.seconds;
-        if self.start.elapsed().as_secs_f64() > seconds {
-            return Err(problem(format!(
-                "loading takes longer than {seconds} seconds (limit `seconds`)"
-            )));
+    /// Asks the clock now and then.
+    fn tick(&mut self) -> Read<()> {
+        self.visits += 1;
+        if self.visits.is_multiple_of(CLOCK) {
+            self.check_clock()?;
         }
         Ok(())
+    }
+
+    fn check_clock(&self) -> Read<()> {
+        self.budget
+            .check_clock()
+            .map_err(|e| problem(e.to_string()))
     }
 
     fn node(&mut self, name: &str, body: &Value) -> Read<Field> {
@@ -500,8 +503,9 @@ impl Reader {
                     .map(|i| i.name)
                     .chain(["place", "repeat", "polar", "paint", "formula", "part"])
                     .collect();
-                Err(problem(format!("there is no field `{name}`"))
-                    .maybe_help(suggestion(name, names.iter().copied())))
+                let help = suggestion(name, names.iter().copied());
+                let name = shortened(name, KEY);
+                Err(problem(format!("there is no field `{name}`")).maybe_help(help))
             }
         }
     }
@@ -536,12 +540,19 @@ fn camera(value: &Value) -> Read<View> {
         "eye", "axes", "target", "up", "fov", "height", "near", "far",
     ];
     let map = members(value, "a camera", &names)?;
-    let point = |v: &Value| array::<f64, 3>(v, number).map(DVec3::from);
+    let point = |v: &Value| {
+        let single = single(-f32::MAX, f32::MAX);
+        array::<f64, 3>(v, single).map(DVec3::from)
+    };
     let axes = member(map, "axes", |v| {
         let rows: [[f64; 3]; 3] = array(v, |row| array::<f64, 3>(row, number))?;
         let axes = DMat3::from_cols_array_2d(&rows);
         let error = axes * axes.transpose() - DMat3::IDENTITY;
-        if error.to_cols_array().iter().any(|e| e.abs() > 1e-3) {
+        if error
+            .to_cols_array()
+            .iter()
+            .any(|e| e.abs() > valid::UPRIGHT)
+        {
             return Err(problem(
                 "the axes must have length 1 and be at right angles to each other",
             ));
@@ -570,9 +581,10 @@ fn camera(value: &Value) -> Read<View> {
         direction: None,
         axes,
         fov: member(map, "fov", range(1.0, 170.0))?.map_or(default.fov, f64::to_radians),
-        height: member(map, "height", range(1e-6, 1e6))?,
-        near: member(map, "near", range(0.0, 1e9))?.unwrap_or(default.near),
-        far: member(map, "far", range(1e-6, 1e9))?,
+        height: member(map, "height", single(valid::HEIGHT.0, valid::HEIGHT.1))?,
+        near: member(map, "near", single(0.0, f32::MAX))?.unwrap_or(default.near),
+        // where a file states none it follows from the bounds, which may be of any size
+        far: member(map, "far", single(0.0, f32::MAX))?,
     };
     // what cannot be framed is refused here, where its place is known
     framing::camera(&view, std::iter::empty(), [1, 1]).map_err(problem)?;
@@ -595,7 +607,8 @@ fn parameters(info: &'static Info, body: &Value, has_of: bool) -> Read<Vec<f64>>
                 .chain(has_of.then_some("of"))
                 .collect();
             let help = suggestion(key, names.iter().copied());
-            return Err(problem(format!("{} has no `{key}`", info.name))
+            let what = shortened(key, KEY);
+            return Err(problem(format!("{} has no `{what}`", info.name))
                 .maybe_help(help)
                 .at(key));
         }

@@ -1,7 +1,8 @@
 //! From a scene to JSON.
 
-use super::{NAME, VERSION, angle_name};
+use super::{NAME, VERSION, angle_name, valid};
 use crate::camera::{Camera, Lens};
+use crate::limits::Limits;
 use crate::scene::Scene;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -13,9 +14,31 @@ use zeroset_field::placement::Placement;
 /// Levels of a field that are written into each other; what lies deeper becomes a part of its own.
 const DEPTH: u32 = 12;
 
+/// Why a scene cannot be written as JSON. Scenes that were loaded can.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("this scene cannot be written as JSON: {reason}")]
+pub struct ExpandError {
+    /// Which number it is, and what is allowed.
+    pub reason: String,
+}
+
+impl ExpandError {
+    fn new(reason: impl Into<String>) -> ExpandError {
+        let reason = reason.into();
+        ExpandError { reason }
+    }
+}
+
 /// The scene as JSON: everything that it is, every number exact.
-pub fn expand(scene: &Scene) -> Value {
-    let mut writer = Writer::default();
+///
+/// # Errors
+/// What could not be read back: numbers that are not finite or out of range, materials that are not there.
+pub fn expand(scene: &Scene) -> Result<Value, ExpandError> {
+    valid::scene(scene, &Limits::NONE).map_err(|p| ExpandError::new(p.message()))?;
+    let mut writer = Writer {
+        materials: scene.materials.len(),
+        ..Writer::default()
+    };
     scene
         .objects
         .iter()
@@ -44,10 +67,38 @@ pub fn expand(scene: &Scene) -> Value {
     out.insert("sky".into(), plain(&scene.sky));
     out.insert("camera".into(), camera(&scene.camera));
     out.insert("settings".into(), plain(&scene.settings));
-    Value::Object(out)
+    let out = Value::Object(out);
+    if let Some(reason) = writer.refused {
+        return Err(ExpandError::new(reason));
+    }
+    // nothing in a scene is written as null but a number that is not finite
+    match null(&out) {
+        Some(path) => Err(ExpandError::new(format!("{path} is not a finite number"))),
+        None => Ok(out),
+    }
 }
 
-/// Data without fields. Its numbers are finite, so it can always be written.
+/// Where there is a null in a value.
+fn null(value: &Value) -> Option<String> {
+    match value {
+        Value::Null => Some(String::new()),
+        Value::Array(items) => {
+            (items.iter().enumerate()).find_map(|(i, v)| Some(format!("[{i}]{}", null(v)?)))
+        }
+        Value::Object(map) => (map.iter()).find_map(|(key, v)| {
+            let inner = null(v)?;
+            let dot = if inner.is_empty() || inner.starts_with('[') {
+                ""
+            } else {
+                "."
+            };
+            Some(format!("{key}{dot}{inner}"))
+        }),
+        _ => None,
+    }
+}
+
+/// Data without fields. What cannot be written becomes null, which is found.
 fn plain(data: &impl Serialize) -> Value {
     serde_json::to_value(data).unwrap_or_default()
 }
@@ -67,7 +118,7 @@ fn camera(camera: &Camera) -> Value {
 }
 
 /// The shortest degrees that become exactly these radians of single precision.
-fn degrees_of(radians: f32) -> f64 {
+pub(super) fn degrees_of(radians: f32) -> f64 {
     let near = f64::from(radians).to_degrees();
     let rounded = (0..15).map(|digits| {
         let text = format!("{near:.digits$}");
@@ -103,6 +154,10 @@ struct Writer {
     /// Parts written already, by node.
     places: HashMap<usize, usize>,
     parts: Vec<Value>,
+    /// Number of materials.
+    materials: usize,
+    /// The first thing that could not be read back.
+    refused: Option<String>,
 }
 
 impl Writer {
@@ -132,6 +187,15 @@ impl Writer {
     }
 
     fn node(&mut self, field: &Field, level: u32) -> Value {
+        if let Node::Paint {
+            paint: Paint::Material(number),
+            ..
+        } = field.node()
+            && usize::from(*number) >= self.materials
+        {
+            let reason = format!("a part has material {number}, which is not there");
+            self.refused.get_or_insert(reason);
+        }
         let mut of = |shape: &Field| self.field(shape, level + 1);
         let (name, body) = match field.node() {
             Node::Primitive { entry, params } => (entry.info.name, parameters(&entry.info, params)),

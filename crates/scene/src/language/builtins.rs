@@ -209,7 +209,7 @@ pub(crate) const ALL: &[Native] = &[
                 let space = if line.is_empty() { "" } else { " " };
                 line = format!("{line}{space}{}", c.machine.spelled(value)?);
             }
-            c.machine.draft.print(line);
+            c.machine.draft.print(&line);
             Ok(Value::None)
         }
     ),

@@ -4,6 +4,7 @@ use super::mistake::{Run, mistake};
 use super::native::{Call, Given, Native, Slot, slot, spoken};
 use super::value::{Thing, Value};
 use crate::colour;
+use crate::draft::unit;
 use crate::images;
 use crate::material::{Material, Pattern};
 use glam::{DVec3, Vec3};
@@ -96,7 +97,7 @@ pub(crate) const ALL: &[Native] = &[
             let direction = c
                 .get("direction")
                 .map_or(Ok([0.0, 1.0, 0.0]), |g| c.direction("direction", g))?;
-            let direction = DVec3::from(direction).normalize().as_vec3();
+            let direction = unit(direction).as_vec3();
             pattern(
                 c,
                 Pattern::Stripes {

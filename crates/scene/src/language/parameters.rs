@@ -135,12 +135,14 @@ fn parameter(c: &mut Call<'_, '_>, control: Control, default: Setting) -> Run<Se
             mistake("the name of a parameter must not be empty nor hold `=`").at(given.place),
         );
     }
+    let fits = c.machine.limits.check_name(&name);
+    fits.map_err(|m| mistake(m).at(given.place))?;
     let value = match c.machine.draft.overrides.get(&name) {
         None => default.clone(),
         Some(text) => read(&name, text, &control)?,
     };
     let place = c.machine.draft.sources.get(c.place.file as usize).map(|s| {
-        let (line, column) = crate::report::position(&s.text, c.place.start as usize);
+        let (line, column) = s.position(c.place.start as usize);
         (s.name.clone(), line as u32, column as u32)
     });
     let parameter = Parameter {

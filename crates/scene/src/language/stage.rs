@@ -3,11 +3,10 @@
 use super::mistake::{Run, mistake};
 use super::native::{Call, Given, Native, Slot, slot};
 use super::value::{Thing, Value};
-use crate::draft::{FOV, View};
+use crate::draft::{FOV, LIGHTS, View, unit};
 use crate::framing::axes_of;
 use crate::light::{Light, Sky, Source};
 use crate::material::Material;
-use crate::report::position;
 use crate::scene::Object;
 use crate::settings::{Occlusion, Shadow};
 use glam::{DMat3, DQuat, DVec3, EulerRot, Vec3};
@@ -101,7 +100,7 @@ pub(crate) const ALL: &[Native] = &[
             let direction = c
                 .get("direction")
                 .map_or(Ok([0.6, -1.0, -0.5]), |g| c.direction("direction", g))?;
-            let direction = DVec3::from(direction).normalize().as_vec3();
+            let direction = unit(direction).as_vec3();
             light(c, Source::Directional { direction })
         }
     ),
@@ -176,7 +175,7 @@ impl Call<'_, '_> {
         };
         let source = self.machine.draft.sources.get(first.file as usize);
         let whereabouts = source.map_or(String::new(), |s| {
-            let (line, _) = position(&s.text, first.start as usize);
+            let (line, _) = s.position(first.start as usize);
             format!(" in {} at line {line}", s.name)
         });
         Err(mistake(format!("{what} is stated already{whereabouts}"))
@@ -216,12 +215,17 @@ fn show(c: &mut Call<'_, '_>) -> Run<Value> {
         .number(&material)
         .ok_or_else(|| mistake("the scene has too many materials"))?;
     let name = match c.get("name") {
-        Some(given) => c.text("name", given)?.to_string(),
+        Some(given) => {
+            let name = c.text("name", given)?.to_string();
+            let fits = c.machine.limits.check_name(&name);
+            fits.map_err(|m| mistake(m).at(given.place))?;
+            name
+        }
         None => (count + 1).to_string(),
     };
     let occlusion = c.get("ao").map(|g| c.occlusion("ao", g)).transpose()?;
     let source = &c.machine.draft.sources[c.place.file as usize];
-    let (line, column) = position(&source.text, c.place.start as usize);
+    let (line, column) = source.position(c.place.start as usize);
     let place = Some((source.name.clone(), line as u32, column as u32));
     c.machine.grow(512)?;
     c.machine.draft.objects.push(Object {
@@ -239,7 +243,7 @@ fn camera(c: &mut Call<'_, '_>) -> Run<Value> {
     let point = |name| c.get(name).map(|g| c.point(name, g)).transpose();
     let direction = |name| {
         c.get(name)
-            .map(|g| c.direction(name, g).map(DVec3::from))
+            .map(|g| c.direction(name, g).map(unit))
             .transpose()
     };
     let turn = c.get("turn").map(|g| orientation(c, g)).transpose()?;
@@ -324,9 +328,6 @@ fn orientation(c: &Call<'_, '_>, given: Given) -> Run<DMat3> {
         x.to_radians(),
     ))
 }
-
-/// The most lights a scene may have.
-const LIGHTS: usize = 64;
 
 fn light(c: &mut Call<'_, '_>, source: Source) -> Run<Value> {
     let strength = if matches!(source, Source::Point { .. }) {

@@ -5,7 +5,7 @@ use crate::scenes::{blend, moved, object, quick, reference, shape, stream, tomcz
 use fearless_simd::Level;
 use zeroset_field::placement::Placement;
 use zeroset_scene::camera::Lens;
-use zeroset_scene::film::{Film, Plane};
+use zeroset_scene::film::{self, Film, Plane};
 use zeroset_scene::render::{RenderError, Renderer, Silent};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Filter, Occlusion, Settings};
@@ -81,6 +81,62 @@ fn a_second_rendering_is_equal() {
         .render_into(&picture, &mut colour, &Silent)
         .expect("a picture");
     assert_eq!(colour.plane(Plane::Colour), films[0].plane(Plane::Colour));
+}
+
+/// Sums of samples are kept for some rows of tiles at a time: how many there are does not change a bit, for any filter, whatever
+/// the number of threads.
+#[test]
+fn limited_sums_are_equal() {
+    for filter in [Filter::Box, Filter::Tent, Filter::Mitchell] {
+        let mut scene = blend();
+        scene.settings = Settings {
+            antialias: Antialias::Supersample { samples: 2, filter },
+            ..quick()
+        };
+        // seven rows of tiles, the last one of a few lines
+        scene.settings.size = [70, 198];
+        let row = 2 * 70_000;
+        let render = |threads, sums| {
+            let renderer = CpuRenderer::new(Some(threads)).expect("threads");
+            bits(
+                &renderer
+                    .with_sums(sums)
+                    .render(&scene, &Silent)
+                    .expect("a picture")
+                    .film,
+            )
+        };
+        let whole = render(1, 100 * row);
+        for rows in [0, 1, 2, 3, 4, 5, 6, 7, 8, 9] {
+            assert!(
+                render(1 + rows as usize % 3, rows * row) == whole,
+                "{rows} rows with {filter:?}"
+            );
+        }
+    }
+}
+
+/// What the renderer takes beside the film is what a scene is charged for before it is rendered.
+#[test]
+fn sums_are_not_more_than_charged() {
+    for size in [
+        [1, 1],
+        [64, 32],
+        [65, 33],
+        [1920, 1080],
+        [8192, 8192],
+        [100_000, 2],
+        [2, 100_000],
+        [67_108_864, 1],
+    ] {
+        let bytes = zeroset_trace::sums(size);
+        let charged = film::scratch(size);
+        assert!(bytes <= charged, "{bytes} of {charged} bytes at {size:?}");
+        assert!(
+            charged <= 2 * bytes + (1 << 16),
+            "{bytes} of {charged} bytes at {size:?}"
+        );
+    }
 }
 
 #[test]

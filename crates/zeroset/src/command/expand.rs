@@ -2,7 +2,7 @@
 
 use crate::args::Expand;
 use crate::console::Console;
-use crate::failure::Failure;
+use crate::failure::{Exit, Failure};
 use std::io::Write;
 use zeroset_output::atomic::{probe, write_atomically};
 use zeroset_scene::json::{expand, to_text};
@@ -14,7 +14,8 @@ pub(crate) fn run(args: &Expand, console: &Console) -> Result<(), Failure> {
     }
     let options = crate::scene::options(&args.scene, None)?;
     let loaded = crate::scene::loaded(&args.scene, &options, console)?;
-    let text = to_text(&expand(&loaded.scene));
+    let written = expand(&loaded.scene).map_err(|e| Failure::new(Exit::Scene, e.to_string()))?;
+    let text = to_text(&written);
     match &args.output {
         None => console.print(&text),
         Some(path) => Ok(write_atomically(path, |writer| {

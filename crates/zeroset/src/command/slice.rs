@@ -10,6 +10,7 @@ use zeroset_field::program::{Limits, Program};
 use zeroset_output::atomic::{probe, write_atomically};
 use zeroset_output::format::Notes;
 use zeroset_output::format::png::{Depth, write};
+use zeroset_scene::film;
 use zeroset_scene::scene::Scene;
 
 /// Air around the bounds, as a share of their larger side.
@@ -36,8 +37,13 @@ pub(crate) fn run(args: &Slice, console: &Console) -> Result<(), Failure> {
             "sections are written as PNG",
         ));
     }
-    probe(&path)?;
     let invalid = |error: String| Failure::new(Exit::Scene, error);
+    // a value and a slope a pixel, the picture, and the picture with a legend beside it
+    let planes = [film::Plane::Residual, film::Plane::Steps];
+    (options.limits)
+        .check_picture(args.size.0, &planes, 24)
+        .map_err(|error| invalid(error.to_string()))?;
+    probe(&path)?;
     let Some(field) = scene.field().map_err(|error| invalid(error.to_string()))? else {
         return Err(invalid(
             "the scene shows nothing that could be cut".to_owned(),

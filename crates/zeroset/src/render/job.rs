@@ -13,7 +13,8 @@ use std::path::{Path, PathBuf};
 use zeroset_output::atomic::{probe, write_atomically};
 use zeroset_output::format::png::Depth;
 use zeroset_output::format::{Notes, exr, png};
-use zeroset_output::view::View;
+use zeroset_output::picture::Developed;
+use zeroset_output::view::{View, needed};
 use zeroset_scene::film::Plane;
 use zeroset_scene::load::{Loaded, Options};
 use zeroset_scene::render::{Frame, Observer};
@@ -80,13 +81,17 @@ impl<'a> Job<'a> {
             path = numbered(&path, number, frames);
             label = format!("{label} {}/{}", number - frames.start + 1, frames.len());
         }
+        let (planes, copies) = planes(&path, self.args.view)?;
+        (options.limits)
+            .check_picture(scene.settings.size, planes, copies)
+            .map_err(|e| Failure::new(Exit::Scene, e.to_string()))?;
         probe(&path)?;
         let progress = Progress {
             bar: self.console.bar(label),
             cancelled,
         };
         let restart = || progress.bar.reset();
-        let rendered = self.engine.render(&scene, &progress, &restart);
+        let rendered = self.engine.render(&scene, planes, &progress, &restart);
         progress.bar.finish_and_clear();
         let (rendered, used) = rendered?;
         self.write(&path, &scene, options, &rendered)?;
@@ -129,13 +134,19 @@ impl<'a> Job<'a> {
                     legend: !self.args.no_legend,
                     objects: &names,
                 };
-                let picture = view.of(&rendered.film);
                 let depth = if self.args.bits == "16" {
                     Depth::Sixteen
                 } else {
                     Depth::Eight
                 };
-                write_atomically(path, |writer| png::write(writer, &picture, depth, &notes))?;
+                if view.plane == Plane::Colour {
+                    // without a second copy of a picture that may be large
+                    let picture = Developed::new(&rendered.film, view.exposure);
+                    write_atomically(path, |writer| png::write(writer, &picture, depth, &notes))?;
+                } else {
+                    let picture = view.of(&rendered.film);
+                    write_atomically(path, |writer| png::write(writer, &picture, depth, &notes))?;
+                }
             }
         }
         Ok(())
@@ -178,6 +189,16 @@ impl<'a> Job<'a> {
         self.console.note(summary.line());
         Ok(())
     }
+}
+
+/// The planes that a file needs, and the bytes a pixel that writing it takes beside the film.
+fn planes(path: &Path, view: Plane) -> Result<(&'static [Plane], u64), Failure> {
+    Ok(match Container::of(path)? {
+        // all numbers once more, one plane after the other, and what they are compressed to
+        Container::Exr => (&Plane::ALL, 2 * 64),
+        // colours are written row by row, of others there is a picture, and one with a legend beside it
+        Container::Png => (needed(view), if view == Plane::Colour { 0 } else { 24 }),
+    })
 }
 
 /// Tells the bar, and asks whether to stop.

@@ -1,0 +1,87 @@
+//! What loading may take: bytes that are charged before they are asked for, and time.
+
+use crate::limits::Limits;
+use std::time::Instant;
+
+/// The part of the limit `memory` that loading may take: the picture needs the rest, and a scene that ends in an error
+/// never needs a picture.
+const SHARE: u64 = 8;
+
+/// Bytes and seconds of one load.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Budget {
+    held: u64,
+    memory: u64,
+    start: Instant,
+    seconds: f64,
+}
+
+/// Why loading ends.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub(crate) enum Spent {
+    #[error(
+        "{what} would take {wanted} of memory beside the {held} that the scene's files take already: at most {allowed} in \
+         all (an eighth of the limit `memory`)"
+    )]
+    Memory {
+        what: String,
+        wanted: String,
+        held: String,
+        allowed: String,
+    },
+    #[error("loading takes longer than {0} seconds (limit `seconds`)")]
+    Time(f64),
+}
+
+impl Budget {
+    pub(crate) fn new(limits: &Limits) -> Budget {
+        Budget {
+            held: 0,
+            memory: limits.memory / SHARE,
+            start: Instant::now(),
+            seconds: limits.seconds,
+        }
+    }
+
+    /// When loading began.
+    pub(crate) fn start(&self) -> Instant {
+        self.start
+    }
+
+    /// Charges bytes that are kept until loading ends.
+    pub(crate) fn hold(&mut self, bytes: u64, what: impl FnOnce() -> String) -> Result<(), Spent> {
+        self.borrow(bytes, what)?;
+        self.held += bytes;
+        Ok(())
+    }
+
+    /// Whether bytes may be taken that are given back at once.
+    pub(crate) fn borrow(&self, bytes: u64, what: impl FnOnce() -> String) -> Result<(), Spent> {
+        if self.held.saturating_add(bytes) <= self.memory {
+            return Ok(());
+        }
+        Err(Spent::Memory {
+            what: what(),
+            wanted: size(bytes),
+            held: size(self.held),
+            allowed: size(self.memory),
+        })
+    }
+
+    /// Whether there is time left.
+    pub(crate) fn check_clock(&self) -> Result<(), Spent> {
+        if self.start.elapsed().as_secs_f64() > self.seconds {
+            return Err(Spent::Time(self.seconds));
+        }
+        Ok(())
+    }
+}
+
+/// Bytes for people.
+pub(crate) fn size(bytes: u64) -> String {
+    match bytes {
+        0..1_000_000 => format!("{} KiB", bytes.div_ceil(1 << 10)),
+        1_000_000..10_000_000_000 => format!("{} MiB", bytes.div_ceil(1 << 20)),
+        _ => format!("{} GiB", bytes.div_ceil(1 << 30)),
+    }
+}
