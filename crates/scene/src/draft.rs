@@ -7,7 +7,7 @@ use crate::light::{self, Light, Sky};
 use crate::limits::Limits;
 use crate::load::{Options, Parameter};
 use crate::material::Material;
-use crate::report::{Place, Source, suggestion};
+use crate::report::{Place, Report, Source, suggestion};
 use crate::scene::{Object, Scene};
 use crate::settings::{Settings, Shading, Shadow};
 use glam::{DVec3, Vec3};
@@ -74,7 +74,10 @@ pub(crate) struct Draft {
     pub(crate) animated: bool,
     pub(crate) files: Files,
     pub(crate) log: Vec<String>,
+    pub(crate) warnings: Vec<Report>,
     size: Option<[u32; 2]>,
+    /// Where lines begin, by file, as far as anyone asked.
+    lines: HashMap<u32, Vec<u32>>,
 }
 
 /// Lines of the log that are kept.
@@ -99,13 +102,44 @@ impl Draft {
             animated: false,
             files,
             log: Vec::new(),
+            warnings: Vec::new(),
             size: options.size,
+            lines: HashMap::new(),
         }
     }
 
     pub(crate) fn print(&mut self, line: String) {
         if self.log.len() < LOG {
             self.log.push(line);
+        }
+    }
+
+    /// File, line and column of a place, 1-based; found without reading the file again for each.
+    pub(crate) fn position(&mut self, place: Place) -> Option<(String, u32, u32)> {
+        let source = self.sources.get(place.file as usize)?;
+        let lines = self.lines.entry(place.file).or_insert_with(|| {
+            let ends = source.text.match_indices('\n').map(|(i, _)| i as u32 + 1);
+            std::iter::once(0).chain(ends).collect()
+        });
+        let line = lines.partition_point(|begin| *begin <= place.start);
+        let begin = lines[line.saturating_sub(1)] as usize;
+        let before = source.text.get(begin..place.start as usize)?;
+        let column = before.chars().count() + 1;
+        Some((source.name.clone(), line as u32, column as u32))
+    }
+
+    /// Keeps a warning about a place; one for each place, and no more than a person reads.
+    pub(crate) fn warn(&mut self, report: Report, place: Place) {
+        const MOST: usize = 20;
+        let report = match self.sources.get(place.file as usize) {
+            Some(source) => report.at(source, place),
+            None => report,
+        }
+        .as_warning();
+        let same =
+            |w: &Report| w.message() == report.message() && w.position() == report.position();
+        if self.warnings.len() < MOST && !self.warnings.iter().any(same) {
+            self.warnings.push(report);
         }
     }
 

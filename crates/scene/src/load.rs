@@ -7,7 +7,7 @@ use crate::language;
 use crate::language::mistake::{Mistake, Run, mistake};
 use crate::language::module::{Module, parse};
 use crate::limits::Limits;
-use crate::report::{Place, Report, Source};
+use crate::report::{Report, Source};
 use crate::scene::Scene;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -40,6 +40,8 @@ pub struct Loaded {
     pub files: Vec<PathBuf>,
     /// What the script printed, line by line.
     pub log: Vec<String>,
+    /// What is not as it was meant, although the scene could be loaded.
+    pub warnings: Vec<Report>,
 }
 
 /// A scene that could not be loaded. Boxed: it carries the file's text.
@@ -116,9 +118,6 @@ pub enum Language {
     /// Its twin in JSON, `.json`.
     Json,
 }
-
-/// Stack of the thread that loads: the parser and the interpreter recurse as deep as the text nests, which is limited.
-const STACK: usize = 64 << 20;
 
 /// Loads a scene file. Files that it loads lie in its own folder.
 ///
@@ -203,13 +202,14 @@ fn load_from(
     options: &Options,
 ) -> Result<Loaded, Failed> {
     let (name, options) = (name.to_string(), options.clone());
+    let text = without_mark(text);
     let work = move || match language {
         Language::Starlark => load_starlark(&name, text, root, &options),
         Language::Json => load_json(&name, &text, root, &options),
     };
     let thread = std::thread::Builder::new()
         .name("scene".into())
-        .stack_size(STACK)
+        .stack_size(language::depth::STACK)
         .spawn(work);
     let broken = |message: &str| Failed {
         report: Report::new(message).into(),
@@ -221,6 +221,14 @@ fn load_from(
             "the scene loader broke down; please report this scene as a bug",
         ))
     })
+}
+
+/// A text without the byte order mark that some editors put in front of it.
+fn without_mark(text: String) -> String {
+    match text.strip_prefix('\u{feff}') {
+        Some(rest) => rest.to_string(),
+        None => text,
+    }
 }
 
 fn load_starlark(
@@ -278,6 +286,7 @@ fn finish(
     let files = draft.files.loaded().to_vec();
     let parameters = std::mem::take(&mut draft.parameters);
     let (animated, log) = (draft.animated, std::mem::take(&mut draft.log));
+    let warnings = std::mem::take(&mut draft.warnings);
     let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
     let scene = result.and_then(|()| {
         draft
@@ -291,6 +300,7 @@ fn finish(
             animated,
             files,
             log,
+            warnings,
         }),
         Err(report) => Err(Failed { report, files }),
     }
@@ -315,23 +325,17 @@ impl Loader {
             text: Arc::from(text.as_str()),
         });
         self.names.insert(name.to_string(), None);
-        let ast = parse(file, name, &text, &self.limits)?;
-        let wanted: Vec<(String, Place)> = (ast.loads().into_iter())
-            .map(|l| {
-                let place = Place {
-                    file,
-                    start: l.span.span.begin().get(),
-                    end: l.span.span.end().get(),
-                };
-                (l.module_id.to_string(), place)
-            })
-            .collect();
+        let (statement, wanted) = parse(file, name, &text, &self.limits)?;
         let mut loads = std::collections::HashMap::new();
         for (path, place) in wanted {
             let module = self.loaded(&path).map_err(|m: Box<Mistake>| m.at(place))?;
             loads.insert(path, module);
         }
-        self.modules.push(Module { file, ast, loads });
+        self.modules.push(Module {
+            file,
+            statement,
+            loads,
+        });
         let number = self.modules.len() as u32 - 1;
         self.names.insert(name.to_string(), Some(number));
         Ok(number)
@@ -358,6 +362,6 @@ impl Loader {
             .files
             .read_text(&name, self.limits.file_bytes)
             .map_err(|e| mistake(e.to_string()))?;
-        self.module(&name, text)
+        self.module(&name, without_mark(text))
     }
 }

@@ -30,6 +30,7 @@ pub struct Place {
 /// Why a scene cannot be loaded. Printed by any `miette` handler, or as one line by [`fmt::Display`].
 #[derive(Clone, Debug)]
 pub struct Report {
+    severity: Severity,
     message: String,
     help: Option<String>,
     source: Option<Source>,
@@ -45,6 +46,7 @@ impl Report {
     /// A report without a place.
     pub fn new(message: impl Into<String>) -> Report {
         Report {
+            severity: Severity::Error,
             message: message.into(),
             help: None,
             source: None,
@@ -58,6 +60,12 @@ impl Report {
     /// With a hint what to do.
     pub fn with_help(mut self, help: impl Into<String>) -> Report {
         self.help = Some(help.into());
+        self
+    }
+
+    /// As a warning: the scene was loaded, but something in it is not as it was meant.
+    pub fn as_warning(mut self) -> Report {
+        self.severity = Severity::Warning;
         self
     }
 
@@ -75,7 +83,7 @@ impl Report {
         let end = floor_char(&source.text, end);
         self.position = Some(position(&source.text, start));
         self.label = Some(LabeledSpan::new(None, start, end - start));
-        self.source = Some(source.clone());
+        self.source = Some(without_tabs(source));
         self.name.clone_from(&source.name);
         self
     }
@@ -157,6 +165,17 @@ impl SourceCode for Source {
     }
 }
 
+/// The text as it is shown: a tab takes one place like any other character, so that marks stand below what they mark.
+fn without_tabs(source: &Source) -> Source {
+    if !source.text.contains('\t') {
+        return source.clone();
+    }
+    Source {
+        name: source.name.clone(),
+        text: source.text.replace('\t', " ").into(),
+    }
+}
+
 /// The largest boundary between characters that is not beyond `at`.
 fn floor_char(text: &str, at: usize) -> usize {
     (0..=at.min(text.len()))
@@ -185,7 +204,7 @@ impl std::error::Error for Report {}
 
 impl Diagnostic for Report {
     fn severity(&self) -> Option<Severity> {
-        Some(Severity::Error)
+        Some(self.severity)
     }
 
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
@@ -208,17 +227,35 @@ impl Diagnostic for Report {
     }
 }
 
-/// The name among `names` that `given` was most likely meant to be.
+/// Names that are longer than this, in bytes, are no slips of the pen of anything.
+const LONGEST_NAME: usize = 64;
+/// Names that are looked at for a hint: beyond them, the time is better spent on saying that there is a mistake.
+const MOST_NAMES: usize = 4096;
+
+/// The name among `names` that `given` was most likely meant to be. A stranger may have chosen the names: long ones are
+/// passed over and no more than a few thousand are looked at.
 pub fn nearest<'a>(given: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let lower = given.to_lowercase();
-    let scored = names.into_iter().map(|name| {
-        let plain = |s: &str| s.replace('_', "").to_lowercase();
-        let same = plain(name) == plain(given);
-        let distance = strsim::osa_distance(&lower, &name.to_lowercase());
-        (if same { 0 } else { distance }, name)
+    // more than this many slips are none
+    const SLIPS: usize = 3;
+    if given.len() > LONGEST_NAME {
+        return None;
+    }
+    let plain = |s: &str| s.replace('_', "").to_lowercase();
+    let (lower, bare) = (given.to_lowercase(), plain(given));
+    let length = lower.chars().count();
+    let scored = names.into_iter().take(MOST_NAMES).filter_map(|name| {
+        if name.len() > LONGEST_NAME {
+            return None;
+        }
+        if plain(name) == bare {
+            return Some((0, name));
+        }
+        let other = name.to_lowercase();
+        let near = other.chars().count().abs_diff(length) <= SLIPS;
+        near.then(|| (strsim::osa_distance(&lower, &other), name))
     });
     let (distance, name) = scored.min()?;
-    let allowed = (given.chars().count().max(name.chars().count()) / 3).clamp(1, 3);
+    let allowed = (given.chars().count().max(name.chars().count()) / 3).clamp(1, SLIPS);
     (distance <= allowed).then_some(name)
 }
 
@@ -230,8 +267,9 @@ pub(crate) fn suggestion<'a>(
     if let Some(name) = nearest(given, names.clone()) {
         return Some(format!("did you mean `{name}`?"));
     }
-    let all: Vec<&str> = names.into_iter().collect();
+    let all: Vec<&str> = names.into_iter().take(17).collect();
     match all.as_slice() {
+        all if all.iter().any(|name| name.len() > LONGEST_NAME) => None,
         [] => None,
         [one] => Some(format!("there is only `{one}`")),
         _ if all.len() <= 16 => Some(format!("there are {}", listing(&all))),
