@@ -274,7 +274,8 @@ impl<'a> Machine<'a> {
     ) -> Run<Value> {
         self.charge(4 * arguments.len() as u64)?;
         let items = arguments.iter().filter_map(|a| self.store.items(a.value));
-        self.charge(items.map(|i| i.len() as u64).sum())?;
+        let items: u64 = items.map(|i| i.len() as u64).sum();
+        self.charge(items)?;
         let builder = self
             .formula_of(arguments.iter().map(|a| a.value))
             .or_else(|| {

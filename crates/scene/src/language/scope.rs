@@ -163,7 +163,7 @@ impl<'a, F: Fn(&str) -> bool> Check<'a, F> {
         body: impl FnOnce(&mut Self) -> Result<(), (String, Place)>,
     ) -> Result<(), (String, Place)> {
         for name in names {
-            *self.around.entry(name).or_default() += 1;
+            *self.around.entry(*name).or_default() += 1;
         }
         body(self)?;
         for name in names {
