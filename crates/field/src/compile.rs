@@ -1,8 +1,8 @@
 //! From the tree to the list: lowering, sharing, registers.
 
 use crate::bounds::{Aabb, Exactness};
-use crate::catalogue::Stretch;
 use crate::catalogue::entries::catalogue;
+use crate::catalogue::{Dimension, Stretch};
 use crate::field::{Field, Node, Paint};
 use crate::formula::{Binary, Formula, Step};
 use crate::op::code;
@@ -47,7 +47,7 @@ struct Lowering<'l> {
 
 pub(crate) fn compile(field: &Field, limits: &Limits) -> Result<Program, CompileError> {
     let facts = field.facts();
-    if facts.dimension == crate::catalogue::Dimension::Two {
+    if facts.dimension == Dimension::Two {
         return Err(CompileError::Flat);
     }
     let mut l = Lowering {
@@ -298,14 +298,36 @@ impl Lowering<'_> {
     }
 
     fn polar(&mut self, polar: &Polar, shape: &Field, point: u32) -> Result<u32, CompileError> {
-        let bounds = shape.facts().bounds;
+        let mut bounds = shape.facts().bounds;
+        // a plane shape's copies go around z: as around y, with y and z exchanged before and after
+        let plane = shape.facts().dimension == Dimension::Two;
+        let upright = inverse(&Placement::UPRIGHT);
+        if plane {
+            bounds = Polar::upright(&bounds);
+        }
         let narrow = polar.is_narrow(&bounds);
+        let around = if plane && narrow {
+            self.warp(code::RIGID, point, &upright)?
+        } else {
+            point
+        };
         let mut nearest = None;
         for copy in 0..(if narrow { 2 } else { polar.count }) {
             let cell = if narrow {
-                self.warp(code::POLAR_CELL, point, &[f64::from(copy), polar.sector()])?
+                let params = [f64::from(copy), polar.sector()];
+                let cell = self.warp(code::POLAR_CELL, around, &params)?;
+                if plane {
+                    self.warp(code::RIGID, cell, &upright)?
+                } else {
+                    cell
+                }
             } else {
-                let turn = Placement::turned([0.0, 1.0, 0.0], -f64::from(copy) * polar.sector());
+                let axis = if plane {
+                    [0.0, 0.0, 1.0]
+                } else {
+                    [0.0, 1.0, 0.0]
+                };
+                let turn = Placement::turned(axis, -f64::from(copy) * polar.sector());
                 self.warp(code::RIGID, point, &inverse(&turn))?
             };
             let value = self.copy(shape, cell)?;
@@ -327,7 +349,7 @@ impl Lowering<'_> {
             bounds.min[1],
             bounds.max[1],
         ];
-        self.change(code::POLAR_WALL, nearest, point, &wall)
+        self.change(code::POLAR_WALL, nearest, around, &wall)
     }
 
     fn formula(&mut self, formula: &Formula, point: u32) -> Result<u32, CompileError> {

@@ -70,7 +70,7 @@ pub enum Node {
         /// What.
         shape: Field,
     },
-    /// Copies around the y axis.
+    /// Copies around the y axis, or around z if the shape is plane.
     Polar {
         /// How.
         polar: Polar,
@@ -208,6 +208,12 @@ impl Field {
         check_params(&entry.info, &params, entry.check)?;
         let child = self.facts();
         let through = through(&entry.info, child.dimension)?;
+        if through == Dimension::Two {
+            (entry.plane)(&params).map_err(|reason| FieldError::Unfit {
+                entry: entry.info.name,
+                reason,
+            })?;
+        }
         let dimension = if entry.section {
             Dimension::Two
         } else {
@@ -346,7 +352,8 @@ impl Field {
     /// This field moved, turned or scaled. Placements that follow each other become one.
     ///
     /// # Errors
-    /// A tree too deep, a placement that is not finite, a scale that is not positive.
+    /// A tree too deep, a placement that is not finite, a scale that is not positive, a plane shape that would leave its
+    /// plane.
     pub fn place(&self, placement: Placement) -> Result<Field, FieldError> {
         let numbers = placement.rotation.iter().flatten().chain(&placement.offset);
         if !numbers.chain([&placement.scale]).all(|x| x.is_finite()) || placement.scale <= 0.0 {
@@ -364,6 +371,15 @@ impl Field {
             _ => (placement, self),
         };
         let child = shape.facts();
+        let placement = match child.dimension {
+            Dimension::Two => placement.in_plane().ok_or_else(|| FieldError::Unfit {
+                entry: "place",
+                reason: "a plane shape lies in the plane z = 0 and cannot leave it: move it along x and y and turn it about z, \
+                         or make a solid of it with extrude(...) or revolve(...) first"
+                    .into(),
+            })?,
+            _ => placement,
+        };
         let facts = Facts {
             bounds: placement.bounds(&child.bounds),
             ..child.above()?
@@ -383,8 +399,12 @@ impl Field {
     /// A spacing that is too small for the shape, or a shape without bounds along a repeated axis.
     pub fn repeat(&self, repetition: Repetition) -> Result<Field, FieldError> {
         let child = self.facts();
-        repetition
-            .check(&child.bounds)
+        let in_plane = match child.dimension {
+            Dimension::Two => repetition.check_plane(),
+            _ => Ok(()),
+        };
+        in_plane
+            .and_then(|()| repetition.check(&child.bounds))
             .map_err(|reason| FieldError::Unfit {
                 entry: "repeat",
                 reason,
@@ -405,20 +425,28 @@ impl Field {
         ))
     }
 
-    /// Copies of this field around the y axis.
+    /// Copies of this field around the y axis; those of a plane shape stay in its plane, around the z axis.
     ///
     /// # Errors
     /// Too many copies for a shape that is wider than its sector.
     pub fn polar(&self, polar: Polar) -> Result<Field, FieldError> {
         let child = self.facts();
-        polar
-            .check(&child.bounds)
-            .map_err(|reason| FieldError::Unfit {
-                entry: "polar",
-                reason,
-            })?;
+        let plane = child.dimension == Dimension::Two;
+        let upright = if plane {
+            Polar::upright(&child.bounds)
+        } else {
+            child.bounds
+        };
+        polar.check(&upright).map_err(|reason| FieldError::Unfit {
+            entry: "polar",
+            reason,
+        })?;
         let facts = Facts {
-            bounds: polar.bounds(&child.bounds),
+            bounds: if plane {
+                Polar::upright(&polar.bounds(&upright))
+            } else {
+                polar.bounds(&upright)
+            },
             exactness: child.exactness.max(Exactness::Bound),
             slope: 1.0,
             steep: false,

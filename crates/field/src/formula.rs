@@ -104,7 +104,8 @@ pub enum Binary {
     Max,
     /// `x - y floor(x / y)`.
     Modulo,
-    /// `x ^ y` for x > 0; x counts as above 0.
+    /// `x ^ y` for x > 0. A base that can be negative is refused, unless y is a constant whole number: then [`Steps`] holds
+    /// products in place of the power.
     Pow,
     /// The angle of the point (y, x), in [-pi, pi]: the first operand is the ordinate.
     Atan2,
@@ -181,6 +182,9 @@ pub enum StepsError {
         /// The coordinate.
         axis: u8,
     },
+    /// A power that has no value, or too many steps once whole powers are written as products.
+    #[error(transparent)]
+    Built(#[from] BuildError),
     /// A constant that single precision cannot hold.
     #[error("step {step} is the constant {value}, which must lie within -1e18 to 1e18")]
     Constant {
@@ -196,7 +200,7 @@ pub enum StepsError {
 pub struct Steps(Vec<Step>);
 
 impl Steps {
-    /// Checks a list of steps.
+    /// Checks a list of steps. Whole powers are written as products, so the list may become longer.
     ///
     /// # Errors
     /// No steps or too many, operands that are no earlier steps, numbers out of range.
@@ -225,7 +229,7 @@ impl Steps {
                 }
             }
         }
-        Ok(Steps(steps))
+        Ok(Steps(builder::without_whole_powers(steps)?))
     }
 
     /// The steps in their order.
@@ -287,10 +291,11 @@ impl Formula {
     ///
     /// # Errors
     /// A box that is empty, endless or larger than 1e6; a formula whose gradient has no bound over the box, or none that
-    /// was found within the budget.
+    /// was found within the budget; a power or a logarithm of a number that can be negative in the box.
     pub fn prove(steps: Steps, bounds: Aabb, budget: &Budget) -> Result<Formula, ProofError> {
         let bounds = checked(bounds)?;
         let tape = Tape::new(&steps);
+        proof::bases(&tape, &bounds, budget)?;
         let proof = proof::slope(&tape, &bounds, budget)?;
         let cut = proof::cut(&tape, &bounds, proof.slope, budget);
         Ok(Formula {
@@ -308,7 +313,8 @@ impl Formula {
     /// slope that is too small makes holes in the picture.
     ///
     /// # Errors
-    /// A box that is empty, endless or larger than 1e6; a slope that is not above 0 or larger than 1e6.
+    /// A box that is empty, endless or larger than 1e6; a slope that is not above 0 or larger than 1e6; a power or a
+    /// logarithm of a number that can be negative in the box.
     pub fn stated(steps: Steps, bounds: Aabb, slope: f64) -> Result<Formula, ProofError> {
         let bounds = checked(bounds)?;
         // also refuses NaN
@@ -316,6 +322,7 @@ impl Formula {
             return Err(ProofError::Slope { given: slope });
         }
         let tape = Tape::new(&steps);
+        proof::bases(&tape, &bounds, &Budget::default())?;
         let (steepest, steepest_at) = proof::sample(&tape, &bounds);
         let cut = proof::cut(&tape, &bounds, slope, &Budget::default());
         Ok(Formula {

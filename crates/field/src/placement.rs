@@ -29,6 +29,32 @@ impl Placement {
         scales: false,
     };
 
+    /// Exchanges y and z, which is a mirror image.
+    pub(crate) const UPRIGHT: Placement = Placement {
+        rotation: [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]],
+        turns: true,
+        ..Placement::IDENTITY
+    };
+
+    /// This motion with the plane z = 0 exactly on itself, if it maps it there but for rounding; `None` if a plane shape would
+    /// leave its plane.
+    pub(crate) fn in_plane(mut self) -> Option<Placement> {
+        const ROUNDING: f64 = 1e-9;
+        for (i, k) in [(0, 2), (1, 2), (2, 0), (2, 1)] {
+            if self.rotation[i][k].abs() > ROUNDING {
+                return None;
+            }
+            self.rotation[i][k] = 0.0;
+        }
+        // the offset of turns after moves is rounded as well
+        let size = self.offset[0].abs() + self.offset[1].abs();
+        if self.offset[2].abs() > ROUNDING * size {
+            return None;
+        }
+        self.offset[2] = 0.0;
+        Some(self)
+    }
+
     /// Moved by an offset.
     pub fn moved(offset: [f64; 3]) -> Self {
         Placement {

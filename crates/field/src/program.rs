@@ -102,7 +102,7 @@ pub struct Limits {
 impl Default for Limits {
     fn default() -> Self {
         Limits {
-            instructions: 200_000,
+            instructions: 2_500_000,
             params: 4_000_000,
         }
     }

@@ -3,6 +3,7 @@
 use crate::formula::print::number;
 use std::fmt;
 
+mod base;
 mod jet;
 mod look;
 mod obstacle;
@@ -11,6 +12,7 @@ mod tape;
 
 pub use obstacle::{Cause, Obstacle};
 
+pub(crate) use base::bases;
 use jet::Jet;
 pub(crate) use look::{cut, sample};
 pub(crate) use search::slope;
@@ -27,6 +29,9 @@ pub struct Budget {
     pub tolerance: f64,
 }
 
+/// Steps evaluated that any formula is worth.
+const LONGEST: u64 = 4_000_000;
+
 impl Default for Budget {
     fn default() -> Self {
         Budget {
@@ -37,9 +42,10 @@ impl Default for Budget {
 }
 
 impl Budget {
-    /// Boxes that a formula may be looked at in.
+    /// Boxes that a formula may be looked at in: a few also of a long one, as long as that is a matter of a second.
     fn cells(&self, tape: &Tape) -> u64 {
-        (self.operations / tape.steps().len() as u64).max(64)
+        let steps = tape.steps().len() as u64;
+        (self.operations / steps).max((LONGEST / steps).clamp(1, 64))
     }
 }
 
@@ -60,6 +66,8 @@ pub enum ProofError {
     },
     /// The gradient has no bound, or none was found.
     Unbounded(Box<Obstacle>),
+    /// A power or a logarithm of a number that can be negative, or that cannot be shown not to be.
+    Negative(Box<Obstacle>),
     /// The gradient is bounded, but by more than [`STEEPEST`](crate::formula::STEEPEST).
     Steep {
         /// The bound.
@@ -93,6 +101,7 @@ impl fmt::Display for ProofError {
                 )
             }
             ProofError::Unbounded(obstacle) => write!(f, "{obstacle}; {REMEDY}"),
+            ProofError::Negative(obstacle) => write!(f, "{obstacle}"),
             ProofError::Steep {
                 slope,
                 steepest,

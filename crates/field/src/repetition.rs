@@ -33,6 +33,18 @@ impl Repetition {
         (shape.min[k] - self.vary[k], shape.max[k] + self.vary[k])
     }
 
+    /// Whether a plane shape stays in its plane.
+    pub(crate) fn check_plane(&self) -> Result<(), String> {
+        if self.spacing[2] > 0.0 || self.vary[2] > 0.0 {
+            return Err(
+                "a plane shape lies in the plane z = 0, where there is no room for copies along z: give a spacing and vary \
+                 with 0 for z, or make a solid of it with extrude(...) first"
+                    .into(),
+            );
+        }
+        Ok(())
+    }
+
     pub(crate) fn check(&self, shape: &Aabb) -> Result<(), String> {
         let axes = ["x", "y", "z"];
         if !(0..3).any(|k| self.spacing[k] > 0.0) {
@@ -95,7 +107,7 @@ impl Repetition {
     }
 }
 
-/// Copies around the y axis, the first one where the shape is.
+/// Copies around the y axis, the first one where the shape is. Copies of a plane shape lie in its plane, around the z axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Polar {
     /// Number of copies.
@@ -153,11 +165,21 @@ impl Polar {
         Ok(())
     }
 
+    /// The box of all copies, from the box of one of them.
     pub(crate) fn bounds(&self, shape: &Aabb) -> Aabb {
         if shape.is_empty() {
             return *shape;
         }
         let r = shape.radius_about(1);
         Aabb::new([-r, shape.min[1], -r], [r, shape.max[1], r])
+    }
+
+    /// A plane shape's box with y and z exchanged: what goes around z goes around y then, and back.
+    pub(crate) fn upright(shape: &Aabb) -> Aabb {
+        let swap = |p: [f64; 3]| [p[0], p[2], p[1]];
+        Aabb {
+            min: swap(shape.min),
+            max: swap(shape.max),
+        }
     }
 }

@@ -165,6 +165,8 @@ pub struct Text {
     pub glyphs: Vec<Glyph>,
     /// The length of its longest line.
     pub width: f64,
+    /// Characters that the font has no glyph for, each once, in the order of the text.
+    pub missing: Vec<char>,
 }
 
 /// The font that texts are set in unless they name another: DejaVu Sans Bold 2.37.
@@ -212,7 +214,7 @@ impl<'a> Font<'a> {
     }
 
     /// Sets `text`: one line for each of its lines, tabs as wide as four spaces. A character that the font lacks is drawn as
-    /// the font's sign for that.
+    /// the font's sign for that, and told of in [`Text::missing`].
     pub fn set(&self, text: &str, layout: &Layout) -> Result<Text, TextError> {
         layout.check()?;
         let given = text.chars().count();
@@ -235,7 +237,7 @@ impl<'a> Font<'a> {
         for (i, words) in lines.iter().enumerate() {
             let y = first - line * i as f64;
             let start = out.glyphs.len();
-            let width = self.line(words, layout, y, &mut shapes, &mut pieces, &mut out.glyphs)?;
+            let width = self.line(words, layout, y, &mut shapes, &mut pieces, &mut out)?;
             let shift = match layout.align {
                 Align::Left => 0.0,
                 Align::Centre => -width / 2.0,
@@ -272,7 +274,7 @@ impl<'a> Font<'a> {
         y: f64,
         shapes: &mut HashMap<GlyphId, Shape>,
         pieces: &mut usize,
-        glyphs: &mut Vec<Glyph>,
+        out: &mut Text,
     ) -> Result<f64, TextError> {
         let em = layout.size / self.units;
         let map = self.font.charmap();
@@ -286,6 +288,9 @@ impl<'a> Font<'a> {
                 c => (c, 1.0),
             };
             let id = map.map(drawn).unwrap_or(GlyphId::NOTDEF);
+            if id == GlyphId::NOTDEF && !drawn.is_whitespace() && !out.missing.contains(&drawn) {
+                out.missing.push(drawn);
+            }
             let shape = match shapes.get(&id) {
                 Some(shape) => Shape::clone(shape),
                 None => {
@@ -303,7 +308,7 @@ impl<'a> Font<'a> {
                     let tolerance = layout.tolerance;
                     return Err(TextError::TooDetailed { tolerance });
                 }
-                glyphs.push(Glyph {
+                out.glyphs.push(Glyph {
                     character,
                     position: [x, y],
                     outline,

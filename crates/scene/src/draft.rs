@@ -10,7 +10,7 @@ use crate::limits::Limits;
 use crate::load::{Options, Parameter};
 use crate::material::Material;
 use crate::naming::shortened;
-use crate::report::{Place, Source, suggestion};
+use crate::report::{Place, Report, Source, suggestion};
 use crate::scene::{Object, Scene};
 use crate::settings::{Settings, Shading, Shadow};
 use glam::{DVec3, Vec3};
@@ -77,6 +77,7 @@ pub(crate) struct Draft {
     pub(crate) animated: bool,
     pub(crate) files: Files,
     pub(crate) log: Vec<String>,
+    pub(crate) warnings: Vec<Report>,
     size: Option<[u32; 2]>,
 }
 
@@ -104,6 +105,7 @@ impl Draft {
             animated: false,
             files,
             log: Vec::new(),
+            warnings: Vec::new(),
             size: options.size,
         }
     }
@@ -111,6 +113,28 @@ impl Draft {
     pub(crate) fn print(&mut self, line: &str) {
         if self.log.len() < LOG {
             self.log.push(shortened(line, LOG_LINE));
+        }
+    }
+
+    /// File, line and column of a place, 1-based; found without reading the file again for each.
+    pub(crate) fn position(&self, place: Place) -> Option<(String, u32, u32)> {
+        let source = self.sources.get(place.file as usize)?;
+        let (line, column) = source.position(place.start as usize);
+        Some((source.name.clone(), line as u32, column as u32))
+    }
+
+    /// Keeps a warning about a place; one for each place, and no more than a person reads.
+    pub(crate) fn warn(&mut self, report: Report, place: Place) {
+        const MOST: usize = 20;
+        let report = match self.sources.get(place.file as usize) {
+            Some(source) => report.at(source, place),
+            None => report,
+        }
+        .as_warning();
+        let same =
+            |w: &Report| w.message() == report.message() && w.position() == report.position();
+        if self.warnings.len() < MOST && !self.warnings.iter().any(same) {
+            self.warnings.push(report);
         }
     }
 

@@ -9,7 +9,7 @@ use crate::language::mistake::{Mistake, Run, mistake};
 use crate::language::module::{Module, parse};
 use crate::limits::Limits;
 use crate::naming::default_stem;
-use crate::report::{Place, Report, Source};
+use crate::report::{Report, Source};
 use crate::scene::Scene;
 use crate::trees;
 use std::collections::BTreeMap;
@@ -41,6 +41,8 @@ pub struct Loaded {
     pub files: Vec<PathBuf>,
     /// What the script printed, line by line.
     pub log: Vec<String>,
+    /// What is not as it was meant, although the scene could be loaded.
+    pub warnings: Vec<Report>,
 }
 
 /// A scene that could not be loaded. Boxed: it carries the file's text.
@@ -117,9 +119,6 @@ pub enum Language {
     /// Its twin in JSON, `.json`.
     Json,
 }
-
-/// Stack of the thread that loads: the parser and the interpreter recurse as deep as the text nests, which is limited.
-const STACK: usize = 64 << 20;
 
 /// Loads a scene file. Files that it loads lie in its own folder.
 ///
@@ -222,13 +221,14 @@ fn load_from(
     budget: Budget,
 ) -> Result<Loaded, Failed> {
     let (name, options) = (name.to_string(), options.clone());
+    let text = without_mark(text);
     let work = move || match language {
         Language::Starlark => load_starlark(&name, text, root, &options, budget),
         Language::Json => load_json(&name, &text, root, &options, budget),
     };
     let thread = std::thread::Builder::new()
         .name("scene".into())
-        .stack_size(STACK)
+        .stack_size(language::depth::STACK)
         .spawn(work);
     let broken = |message: &str| Failed {
         report: Report::new(message).into(),
@@ -240,6 +240,14 @@ fn load_from(
             "the scene loader broke down; please report this scene as a bug",
         ))
     })
+}
+
+/// A text without the byte order mark that some editors put in front of it.
+fn without_mark(text: String) -> String {
+    match text.strip_prefix('\u{feff}') {
+        Some(rest) => rest.to_string(),
+        None => text,
+    }
 }
 
 fn load_starlark(
@@ -299,6 +307,7 @@ fn finish(
     let files = draft.files.loaded().to_vec();
     let parameters = std::mem::take(&mut draft.parameters);
     let (animated, log) = (draft.animated, std::mem::take(&mut draft.log));
+    let warnings = std::mem::take(&mut draft.warnings);
     let stem = default_stem(Path::new(name));
     let scene = result.and_then(|()| {
         draft
@@ -312,6 +321,7 @@ fn finish(
             animated,
             files,
             log,
+            warnings,
         }),
         Err(report) => Err(Failed { report, files }),
     }
@@ -335,23 +345,17 @@ impl Loader {
         self.names.insert(real.clone(), None);
         let room = trees::charge(name, &text, &mut self.files.budget);
         room.map_err(|e| mistake(e.to_string()))?;
-        let ast = parse(file, name, &text, &self.limits)?;
-        let wanted: Vec<(String, Place)> = (ast.loads().into_iter())
-            .map(|l| {
-                let place = Place {
-                    file,
-                    start: l.span.span.begin().get(),
-                    end: l.span.span.end().get(),
-                };
-                (l.module_id.to_string(), place)
-            })
-            .collect();
+        let (statement, wanted) = parse(file, name, &text, &self.limits)?;
         let mut loads = std::collections::HashMap::new();
         for (path, place) in wanted {
             let module = self.loaded(&path).map_err(|m: Box<Mistake>| m.at(place))?;
             loads.insert(path, module);
         }
-        self.modules.push(Module { file, ast, loads });
+        self.modules.push(Module {
+            file,
+            statement,
+            loads,
+        });
         let number = self.modules.len() as u32 - 1;
         self.names.insert(real, Some(number));
         Ok(number)
@@ -378,6 +382,6 @@ impl Loader {
         }
         let most = self.limits.file_bytes;
         let text = self.files.read_text(&real, &name, most).map_err(wrong)?;
-        self.module(&name, real, text)
+        self.module(&name, real, without_mark(text))
     }
 }

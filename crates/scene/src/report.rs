@@ -49,6 +49,7 @@ pub struct Place {
 /// Why a scene cannot be loaded. Printed by any `miette` handler, or as one line by [`fmt::Display`].
 #[derive(Clone, Debug)]
 pub struct Report {
+    severity: Severity,
     message: String,
     help: Option<String>,
     source: Option<Source>,
@@ -64,6 +65,7 @@ impl Report {
     /// A report without a place.
     pub fn new(message: impl Into<String>) -> Report {
         Report {
+            severity: Severity::Error,
             message: shortened(&message.into(), MESSAGE),
             help: None,
             source: None,
@@ -77,6 +79,12 @@ impl Report {
     /// With a hint what to do.
     pub fn with_help(mut self, help: impl Into<String>) -> Report {
         self.help = Some(shortened(&help.into(), MESSAGE));
+        self
+    }
+
+    /// As a warning: the scene was loaded, but something in it is not as it was meant.
+    pub fn as_warning(mut self) -> Report {
+        self.severity = Severity::Warning;
         self
     }
 
@@ -94,7 +102,7 @@ impl Report {
         let end = floor_char(&source.text, end);
         self.position = Some(source.position(start));
         self.label = Some(LabeledSpan::new(None, start, end - start));
-        self.source = Some(source.clone());
+        self.source = Some(without_tabs(source));
         self.name.clone_from(&source.name);
         self
     }
@@ -179,6 +187,15 @@ impl SourceCode for Source {
     }
 }
 
+/// The text as it is shown: a tab takes one place like any other character, so that marks stand below what they mark.
+fn without_tabs(source: &Source) -> Source {
+    if source.text.contains('\t') {
+        Source::new(&source.name, &source.text.replace('\t', " "))
+    } else {
+        source.clone()
+    }
+}
+
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.message)
@@ -189,7 +206,7 @@ impl std::error::Error for Report {}
 
 impl Diagnostic for Report {
     fn severity(&self) -> Option<Severity> {
-        Some(Severity::Error)
+        Some(self.severity)
     }
 
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
@@ -253,6 +270,7 @@ pub(crate) fn suggestion<'a>(
     // one more than are listed says that there are too many
     let all: Vec<&str> = names.into_iter().take(17).collect();
     match all.as_slice() {
+        all if all.iter().any(|name| name.len() > 4 * COMPARED) => None,
         [] => None,
         [one] => Some(format!("there is only `{one}`")),
         _ if all.len() <= 16 => Some(format!("there are {}", listing(&all))),

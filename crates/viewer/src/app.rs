@@ -253,9 +253,13 @@ impl App {
             section(ui, "View", true, |ui| panel::view(ui, session));
             panel::methods(ui, session);
             ui.separator();
-            let log = session.current.as_ref().map_or(&[][..], |c| &c.loaded.log);
+            let said = session.current.as_ref().map(|c| {
+                let warnings = c.loaded.warnings.iter().map(|w| format!("warning: {w}"));
+                warnings.chain(c.loaded.log.iter().cloned()).collect()
+            });
+            let log: Vec<String> = said.unwrap_or_default();
             if !log.is_empty() {
-                section(ui, "Printed by the scene", true, |ui| panel::log(ui, log));
+                section(ui, "Printed by the scene", true, |ui| panel::log(ui, &log));
             }
             section(ui, "Camera", false, |ui| panel::camera(ui, session, size));
         });

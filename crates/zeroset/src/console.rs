@@ -89,6 +89,13 @@ impl Console {
         let _ = writeln!(io::stderr(), "{}", themed(theme, report));
     }
 
+    /// What is not as it was meant, with its place in the scene, unless `--quiet`.
+    pub(crate) fn warn(&self, report: &dyn Diagnostic) {
+        if !self.quiet {
+            self.report(report);
+        }
+    }
+
     /// A result, on standard output.
     ///
     /// # Errors

@@ -90,6 +90,9 @@ pub(crate) fn attempt(
     for line in &loaded.log {
         console.note(line);
     }
+    for warning in &loaded.warnings {
+        console.warn(warning);
+    }
     tracing::debug!(
         objects = loaded.scene.objects.len(),
         files = loaded.files.len(),

@@ -43,6 +43,8 @@ pub struct MapEntry {
     pub stretch: fn(&[f64], &Aabb) -> Result<Stretch, String>,
     /// See [`Map::bounds`].
     pub bounds: fn(&[f64], &Aabb) -> Aabb,
+    /// See [`Map::plane`].
+    pub plane: fn(&[f64]) -> Result<(), String>,
     /// See [`Map::check`].
     pub check: fn(&[f64]) -> Result<(), String>,
 }
@@ -200,6 +202,7 @@ fn map<E: Map>() -> MapEntry {
         code: 0,
         stretch: E::stretch,
         bounds: E::bounds,
+        plane: E::plane,
         check: E::check,
     }
 }

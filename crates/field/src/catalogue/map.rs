@@ -193,6 +193,15 @@ impl Map for Elongate {
             std::array::from_fn(|k| side(k, shape.max[k], 1.0)),
         )
     }
+    fn plane(a: &[f64]) -> Result<(), String> {
+        if a[2] == 0.0 {
+            return Ok(());
+        }
+        Err(format!(
+            "size is {} along z, but a plane shape has no z to be pulled along: extrude(...) makes a solid of it",
+            a[2]
+        ))
+    }
 }
 
 /// A 2D shape turned about the y axis.

@@ -90,6 +90,15 @@ impl Map for Shear {
             shape,
         )
     }
+    fn plane(a: &[f64]) -> Result<(), String> {
+        if a[1] == 0.0 {
+            return Ok(());
+        }
+        Err(format!(
+            "z is {}, but a plane shape cannot lean out of its plane: make a solid of it with extrude(...) first",
+            a[1]
+        ))
+    }
 }
 
 /// A turn that grows with height.

@@ -294,6 +294,11 @@ pub trait Map: 'static {
     fn stretch(a: &[f64], bounds: &Aabb) -> Result<Stretch, String>;
     /// A box that holds the result, from the box of the shape.
     fn bounds(a: &[f64], shape: &Aabb) -> Aabb;
+    /// Whether a plane shape stays in its plane, if the map takes plane shapes: what would move it along z is refused, as it
+    /// would be lost without a word.
+    fn plane(_a: &[f64]) -> Result<(), String> {
+        Ok(())
+    }
     /// Relations between parameters that ranges cannot state.
     fn check(_a: &[f64]) -> Result<(), String> {
         Ok(())

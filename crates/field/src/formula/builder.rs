@@ -9,7 +9,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Most steps of a formula.
-pub const MAX_STEPS: usize = 4096;
+pub const MAX_STEPS: usize = 1_000_000;
 
 /// Why a formula cannot be written down.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -29,6 +29,14 @@ pub enum BuildError {
         expression: String,
         /// Its value.
         value: f64,
+    },
+    /// A power of a number below 0 that is not whole.
+    #[error("pow({base}, {power}) has no value: only whole powers of a negative number have one")]
+    Power {
+        /// The number.
+        base: f64,
+        /// The power.
+        power: f64,
     },
     /// A value of another formula.
     #[error("a value of one formula is used in another: a formula can only use its own point")]
@@ -254,6 +262,41 @@ impl Builder {
     }
 }
 
+/// A constant power that is a whole number.
+fn whole(power: f64) -> Option<i32> {
+    (power.fract() == 0.0 && power.abs() <= f64::from(i32::MAX)).then_some(power as i32)
+}
+
+/// Steps in which whole powers are written as products, as [`Builder`] writes them.
+pub(super) fn without_whole_powers(steps: Vec<Step>) -> Result<Vec<Step>, BuildError> {
+    let is_whole = |step: &Step| match *step {
+        Step::Binary(Binary::Pow, _, n) => {
+            matches!(steps[n as usize], Step::Constant(n) if whole(n).is_some())
+        }
+        _ => false,
+    };
+    if !steps.iter().any(is_whole) {
+        return Ok(steps);
+    }
+    let builder = Builder::new();
+    let last = {
+        let mut state = builder.state();
+        let mut names: Vec<u32> = Vec::with_capacity(steps.len());
+        for step in &steps {
+            let name = match *step {
+                Step::Coordinate(k) => u32::from(k),
+                Step::Constant(c) => state.constant(c),
+                Step::Unary(f, x) => state.unary(f, names[x as usize]),
+                Step::Binary(f, x, y) => state.binary(f, names[x as usize], names[y as usize]),
+            };
+            names.push(name);
+        }
+        names.last().copied().unwrap_or_default()
+    };
+    let value = builder.expression(&[last]);
+    builder.finish(&value).map(|steps| steps.0)
+}
+
 impl State {
     fn push(&mut self, step: Step) -> u32 {
         if self.steps.len() >= self.limit {
@@ -319,9 +362,21 @@ impl State {
     }
 
     fn binary(&mut self, f: Binary, x: u32, y: u32) -> u32 {
+        if f == Binary::Pow
+            && let Step::Constant(power) = self.steps[y as usize]
+            && let Some(n) = whole(power)
+        {
+            return self.power(x, n);
+        }
         if let (Step::Constant(a), Step::Constant(b)) =
             (self.steps[x as usize], self.steps[y as usize])
         {
+            if f == Binary::Pow && a < 0.0 {
+                let (base, power) = (a, b);
+                self.failure
+                    .get_or_insert(BuildError::Power { base, power });
+                return 0;
+            }
             let value = arithmetic::binary(f, F64(a), F64(b)).0;
             return self.folded(value, |steps| {
                 let mut steps = steps.to_vec();
@@ -353,17 +408,46 @@ impl State {
         step
     }
 
-    /// What is squared in a sum of squares.
-    fn roots(&self, x: u32) -> Option<Vec<u32>> {
-        match self.steps[x as usize] {
-            Step::Unary(Unary::Square, root) => Some(vec![root]),
-            Step::Binary(Binary::Add, x, y) => {
-                let mut roots = self.roots(x)?;
-                roots.extend(self.roots(y)?);
-                (roots.len() <= 8).then_some(roots)
-            }
-            _ => None,
+    /// `x` to a whole power, by squaring: a number below 0 has one too. (The logarithm that other powers go by has no value
+    /// there.)
+    fn power(&mut self, x: u32, n: i32) -> u32 {
+        if let Step::Constant(base) = self.steps[x as usize] {
+            return self.folded(base.powi(n), |_| format!("pow({}, {n})", number(base)));
         }
+        let Some(top) = n.unsigned_abs().checked_ilog2() else {
+            return self.constant(1.0);
+        };
+        let power = (0..top).rev().fold(x, |power, bit| {
+            let square = self.unary(Unary::Square, power);
+            if n.unsigned_abs() >> bit & 1 == 1 {
+                self.binary(Binary::Mul, square, x)
+            } else {
+                square
+            }
+        });
+        if n > 0 {
+            return power;
+        }
+        let one = self.constant(1.0);
+        self.binary(Binary::Div, one, power)
+    }
+
+    /// What is squared in a sum of a few squares.
+    fn roots(&self, x: u32) -> Option<Vec<u32>> {
+        const MOST: usize = 8;
+        // not by recursion: a sum may have as many terms as a formula has steps
+        let (mut waiting, mut roots) = (vec![x], Vec::new());
+        while let Some(x) = waiting.pop() {
+            match self.steps[x as usize] {
+                Step::Unary(Unary::Square, root) => roots.push(root),
+                Step::Binary(Binary::Add, x, y) => waiting.extend([y, x]),
+                _ => return None,
+            }
+            if roots.len() + waiting.len() > MOST {
+                return None;
+            }
+        }
+        Some(roots)
     }
 
     /// `sqrt(x^2 + ...)`, which is the absolute value of a number alone.
@@ -513,7 +597,8 @@ impl Expression {
         max Max;
         /// `self - o floor(self / o)`.
         modulo Modulo;
-        /// self to the power of `o`, for self above 0.
+        /// self to the power of `o`. Where `o` is a constant whole number, self may be below 0 and the power becomes part of the
+        /// formula's structure.
         pow Pow;
         /// Angle of the point (`o`, self) in [-pi, pi].
         atan2 Atan2;
@@ -522,18 +607,14 @@ impl Expression {
     }
 
     /// self to a whole power, by squaring: also for self below 0. The power is part of the formula's structure.
-    pub fn powi(&self, n: u32) -> Expression {
-        let Some(top) = n.checked_ilog2() else {
-            return self * 0.0 + 1.0;
-        };
-        (0..top).rev().fold(self.clone(), |power, bit| {
-            let power = power.square();
-            if n >> bit & 1 == 1 {
-                power * self
-            } else {
-                power
-            }
-        })
+    pub fn powi(&self, n: i32) -> Expression {
+        let mut state = self.builder.state();
+        let mut out = [0; 4];
+        for (out, &x) in out.iter_mut().zip(self.steps()) {
+            *out = state.power(x, n);
+        }
+        drop(state);
+        self.builder.expression(&out[..self.parts()])
     }
 
     /// The value of a constant number.

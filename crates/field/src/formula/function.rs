@@ -74,8 +74,8 @@ static FUNCTIONS: &[Function] = functions! {
     "smoothstep" ("lo", "hi", "x") "A smooth step from 0 at lo to 1 at hi.", |a| a[2].smoothstep(&a[0], &a[1]);
     "sqrt" ("x") "Square root; 0 below 0. Its slope has no bound at 0, that of length(...) has.", |a| a[0].sqrt();
     "square" ("x") "x * x.", |a| a[0].square();
-    "pow" ("x", "y") "x to the power of y, for x above 0.", |a| a[0].pow(&a[1]);
-    "powi" ("x", "n") "x to a whole power n of 0 to 64, a plain number; x may be below 0.", |a| powi(&a[0], &a[1]);
+    "pow" ("x", "y") "x to the power of y. x may be below 0 where y is a whole number, not one that changes from point to point.", |a| a[0].pow(&a[1]);
+    "powi" ("x", "n") "x to a whole power n of -64 to 64, a plain number; x may be below 0.", |a| powi(&a[0], &a[1]);
     "exp" ("x") "e to the power of x.", |a| a[0].exp();
     "log" ("x") "Natural logarithm, for x above 0.", |a| a[0].ln();
     "sin" ("angle") "Sine of an angle in radians.", |a| a[0].sin();
@@ -99,10 +99,10 @@ static FUNCTIONS: &[Function] = functions! {
 
 fn powi(x: &Expression, n: &Expression) -> Expression {
     match n.as_constant() {
-        Some(n) if n.fract() == 0.0 && (0.0..=64.0).contains(&n) => x.powi(n as u32),
+        Some(n) if n.fract() == 0.0 && (-64.0..=64.0).contains(&n) => x.powi(n as i32),
         other => x.builder().fail(BuildError::Parts {
             function: "powi",
-            wanted: "a whole number of 0 to 64 as its power",
+            wanted: "a whole number of -64 to 64 as its power",
             given: other.map_or("a value that changes from point to point".into(), |n| {
                 n.to_string()
             }),

@@ -19,14 +19,16 @@ pub(super) fn gradient(tape: &Tape, [x, y, z]: [f64; 3], duals: &mut Vec<Dual<F6
 
 /// The longest gradient in some places of the box.
 pub(crate) fn sample(tape: &Tape, bounds: &Aabb) -> (f64, [f64; 3]) {
-    const SIDE: usize = 8;
+    const LOOKS: f64 = 8e6;
+    // fewer places of a long formula, so that looking takes no longer than the proof
+    let side = ((LOOKS / tape.steps().len() as f64).cbrt() as usize).clamp(2, 8);
     let mut duals = Vec::new();
     let mut steepest = (0.0, bounds.centre());
-    for i in 0..SIDE * SIDE * SIDE {
-        let index = [i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE];
+    for i in 0..side * side * side {
+        let index = [i % side, i / side % side, i / side / side];
         let p = std::array::from_fn(|k| {
             // off the middle of the box, where kinks are
-            let t = (index[k] as f64 + 0.43) / SIDE as f64;
+            let t = (index[k] as f64 + 0.43) / side as f64;
             bounds.min[k] + t * (bounds.max[k] - bounds.min[k])
         });
         let length = gradient(tape, p, &mut duals);

@@ -19,6 +19,8 @@ pub enum Cause {
     Logarithm,
     /// Raises a number that may be 0 to a power below 1, or one that varies.
     Power,
+    /// Raises a number that may be negative to a power that is not whole, or takes its logarithm.
+    Base,
     /// Takes the arc sine or arc cosine of a number that may reach -1 or 1.
     Arc,
     /// Takes the tangent of an angle that may be a right one.
@@ -93,7 +95,19 @@ impl Obstacle {
             Step::Unary(Unary::Tan, x) => (Cause::Tangent, step, x),
             _ => (Cause::Overflow, step, step as u32),
         };
-        let range = jet(operand).value();
+        Obstacle::of(tape, jets, (cause, step, operand), cell, certain)
+    }
+
+    /// That a step does something that its operand does not allow, over a cell.
+    pub(super) fn of(
+        tape: &Tape,
+        jets: &[Jet],
+        (cause, step, operand): (Cause, usize, u32),
+        cell: &Cell,
+        certain: bool,
+    ) -> Obstacle {
+        let steps = tape.steps();
+        let range = jets[operand as usize].value();
         Obstacle {
             cause,
             expression: text(steps, step as u32),
@@ -117,7 +131,9 @@ fn holds_zero(jet: &Jet) -> bool {
 impl fmt::Display for Obstacle {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (e, x) = (&self.expression, &self.operand);
-        f.write_str("the slope of the formula cannot be bounded: ")?;
+        if self.cause != Cause::Base {
+            f.write_str("the slope of the formula cannot be bounded: ")?;
+        }
         match self.cause {
             Cause::Division => write!(f, "`{e}` divides by `{x}`, which may be 0")?,
             Cause::Root => write!(
@@ -127,7 +143,14 @@ impl fmt::Display for Obstacle {
             Cause::Logarithm => write!(f, "`{e}` is infinitely steep where `{x}` is 0 or below")?,
             Cause::Power => write!(
                 f,
-                "`{e}` is infinitely steep or not a number where `{x}` is 0 or below (for whole powers use powi(...))"
+                "`{e}` is infinitely steep or not a number where `{x}` is 0"
+            )?,
+            Cause::Base if self.certain => {
+                write!(f, "`{e}` has no value where `{x}` is negative, and it is")?
+            }
+            Cause::Base => write!(
+                f,
+                "`{e}` has no value where `{x}` is negative, and it could not be shown that it never is"
             )?,
             Cause::Arc => write!(f, "`{e}` is infinitely steep where `{x}` is -1 or 1")?,
             Cause::Tangent => write!(f, "`{e}` is infinite at an angle of 90 degrees")?,
@@ -148,6 +171,13 @@ impl fmt::Display for Obstacle {
                 number(about(self.range[0])),
                 number(about(self.range[1]))
             )?;
+        }
+        if self.cause == Cause::Base {
+            return write!(
+                f,
+                ": write max({x}, 0) or abs({x}) in its place, or bounds within which it is not; whole powers such as pow({x}, 3) \
+                 may be of anything"
+            );
         }
         if !self.certain {
             f.write_str(" (or the search was too short to tell: raise its budget)")?;

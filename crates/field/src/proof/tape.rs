@@ -117,9 +117,8 @@ fn is_exclusive(steps: &[Step], step: usize) -> bool {
         let Some(greatest) = beside_zero(steps, Binary::Min, inside) else {
             return false;
         };
-        let (mut parts, mut faces) = (Vec::new(), Vec::new());
-        leaves(steps, Binary::Hypot, length, &mut parts);
-        leaves(steps, Binary::Max, greatest, &mut faces);
+        let parts = leaves(steps, Binary::Hypot, length);
+        let faces = leaves(steps, Binary::Max, greatest);
         (parts.iter()).all(|&part| {
             beside_zero(steps, Binary::Max, part).is_some_and(|face| faces.contains(&face))
         })
@@ -137,15 +136,19 @@ fn beside_zero(steps: &[Step], f: Binary, step: u32) -> Option<u32> {
 }
 
 /// What a nest of one function is made of, as far as it is of any use to look.
-fn leaves(steps: &[Step], f: Binary, step: u32, found: &mut Vec<u32>) {
+fn leaves(steps: &[Step], f: Binary, step: u32) -> Vec<u32> {
     const ENOUGH: usize = 16;
-    match steps[step as usize] {
-        Step::Binary(g, x, y) if f == g && found.len() < ENOUGH => {
-            leaves(steps, f, x, found);
-            leaves(steps, f, y, found);
+    // not by recursion: a nest may be as deep as the formula is long
+    let (mut waiting, mut found) = (vec![step], Vec::new());
+    while let Some(step) = waiting.pop() {
+        match steps[step as usize] {
+            Step::Binary(g, x, y) if f == g && found.len() + waiting.len() < ENOUGH => {
+                waiting.extend([y, x]);
+            }
+            _ => found.push(step),
         }
-        _ => found.push(step),
     }
+    found
 }
 
 impl Tape {

@@ -28,6 +28,10 @@ pub(crate) const ALL: &[Native] = &[
         [X],
         |c| {
             let given = c.need("x")?;
+            if let Value::Text(i) = given.value {
+                c.machine
+                    .charge(c.machine.store.text(i).len() as u64 / 16)?;
+            }
             let length = c.machine.length(given.value)?;
             Ok(Value::Int(i64::try_from(length).unwrap_or(i64::MAX)))
         }
@@ -119,16 +123,20 @@ pub(crate) const ALL: &[Native] = &[
         |c| extreme(c, Ordering::Greater)
     ),
     native!("any", "Whether one of the items is true.", [ITEMS], |c| {
-        let items = items(c)?;
-        Ok(Value::Bool(
-            items.iter().any(|x| c.machine.store.is_true(*x)),
-        ))
+        for item in items(c)? {
+            if c.machine.truth(item)? {
+                return Ok(Value::Bool(true));
+            }
+        }
+        Ok(Value::Bool(false))
     }),
     native!("all", "Whether all items are true.", [ITEMS], |c| {
-        let items = items(c)?;
-        Ok(Value::Bool(
-            items.iter().all(|x| c.machine.store.is_true(*x)),
-        ))
+        for item in items(c)? {
+            if !c.machine.truth(item)? {
+                return Ok(Value::Bool(false));
+            }
+        }
+        Ok(Value::Bool(true))
     }),
     native!(
         "int",
@@ -145,6 +153,7 @@ pub(crate) const ALL: &[Native] = &[
             match given.value {
                 Value::Text(i) => {
                     let text = c.machine.store.text(i).clone();
+                    c.machine.charge(text.len() as u64 / 16)?;
                     let x = text
                         .trim()
                         .parse()
@@ -162,7 +171,7 @@ pub(crate) const ALL: &[Native] = &[
         [X],
         |c| {
             let value = c.need_any("x")?;
-            Ok(Value::Bool(c.machine.store.is_true(value)))
+            Ok(Value::Bool(c.machine.truth(value)?))
         }
     ),
     native!("str", "A value as text.", [X], |c| {
@@ -206,8 +215,10 @@ pub(crate) const ALL: &[Native] = &[
             let values: Vec<Value> = c.rest.iter().map(|g| g.value).collect();
             let mut line = String::new();
             for value in values {
-                let space = if line.is_empty() { "" } else { " " };
-                line = format!("{line}{space}{}", c.machine.spelled(value)?);
+                if !line.is_empty() {
+                    line.push(' ');
+                }
+                line.push_str(&c.machine.spelled(value)?);
             }
             c.machine.draft.print(&line);
             Ok(Value::None)
@@ -431,6 +442,7 @@ fn int(c: &mut Call<'_, '_>) -> Run<Value> {
         }
         Value::Text(i) => {
             let text = c.machine.store.text(i).clone();
+            c.machine.charge(text.len() as u64 / 16)?;
             let x = text
                 .trim()
                 .parse()

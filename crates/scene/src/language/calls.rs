@@ -1,5 +1,6 @@
 //! Calls: of functions of the script, of this crate's, and of methods.
 
+use super::depth::CALL;
 use super::fields;
 use super::machine::{Body, Machine, ParamKind};
 use super::methods;
@@ -31,7 +32,9 @@ impl<'a> Machine<'a> {
             let (name, method) = method.map_err(|m| m.at(named))?;
             let arguments = self.arguments(args)?;
             return self
-                .call_method(receiver, name, method, arguments, place)
+                .deeper(CALL, |m| {
+                    m.call_method(receiver, name, method, arguments, place)
+                })
                 .map_err(|m| m.at(place));
         }
         let place = self.place(span);
@@ -93,6 +96,15 @@ impl<'a> Machine<'a> {
 
     /// Calls a value.
     pub(crate) fn call(
+        &mut self,
+        callee: Value,
+        arguments: Vec<Argument<'a>>,
+        place: Place,
+    ) -> Run<Value> {
+        self.deeper(CALL, |m| m.call_value(callee, arguments, place))
+    }
+
+    fn call_value(
         &mut self,
         callee: Value,
         arguments: Vec<Argument<'a>>,
@@ -312,6 +324,10 @@ impl<'a> Machine<'a> {
         self.charge(count as u64)?;
         let mut values: Vec<Option<Value>> = vec![None; count];
         let (mut rest, mut rest_named) = (Vec::new(), Vec::new());
+        // by name, each is compared with every parameter
+        let params = self.functions[number as usize].params.len() as u64;
+        let named = arguments.iter().filter(|a| a.name.is_some()).count() as u64;
+        self.charge(named.saturating_mul(1 + params / 16))?;
         // parameters stand in front of the other variables, in the same order
         let f = &self.functions[number as usize];
         let name = f.name;

@@ -12,7 +12,7 @@ use std::sync::Arc;
 use zeroset_field::bounds::Aabb;
 use zeroset_field::field::Field;
 use zeroset_field::formula::{
-    Budget, BuildError, Builder, Expression, Formula, Function, functions,
+    Budget, BuildError, Builder, Expression, Formula, Function, ProofError, functions,
 };
 
 const SLOTS: &[Slot] = &[
@@ -53,8 +53,29 @@ pub(crate) fn more_functions() -> impl Iterator<Item = &'static Function> {
     functions().iter().filter(|f| !super::is_native(f.name))
 }
 
-/// Steps of the script that a proof counts as: a proof takes up to a tenth of a second.
+/// Steps of the script that a proof counts as, beside those of the formula: a proof takes up to a tenth of a second.
 const PROOF: u64 = 20_000;
+
+/// Bytes that a value of a formula counts as.
+const BYTES: usize = 40;
+
+/// That the truth of a value is asked for which depends on the point.
+pub(crate) fn undecided() -> Box<Mistake> {
+    mistake(
+        "a value of a formula is neither true nor false: the formula is written down once, for all points",
+    )
+    .help(
+        "where values are negative inside, min(a, b) is a or b, max(a, b) is a and b, -a is not a; clamp(x, lo, hi), \
+         step(edge, x) and mix(a, b, t) choose between values",
+    )
+}
+
+/// That values are compared which depend on the point.
+pub(crate) fn incomparable() -> Box<Mistake> {
+    mistake("a formula cannot compare: it is written down once, for all points").help(
+        "write min(a, b), max(a, b), clamp(x, lo, hi), step(edge, x) or smoothstep(lo, hi, x)",
+    )
+}
 
 fn field(c: &mut Call<'_, '_>) -> Run<Value> {
     let given = c.need("f")?;
@@ -84,13 +105,17 @@ fn field(c: &mut Call<'_, '_>) -> Run<Value> {
     let steps = builder
         .finish(&value)
         .map_err(|e| told(&e).at(given.place))?;
-    c.machine.charge(PROOF)?;
+    c.machine.charge(PROOF + steps.list().len() as u64)?;
     let formula = match slope {
         Some(slope) => Formula::stated(steps, bounds, slope),
         None => Formula::prove(steps, bounds, &Budget::default()),
     };
     let formula = formula.map_err(|e| {
-        mistake(e.to_string()).help("state how fast it changes at most: field(..., slope = 2)")
+        let m = mistake(e.to_string()).at(given.place);
+        match e {
+            ProofError::Negative(_) => m,
+            _ => m.help("state how fast it changes at most: field(..., slope = 2)"),
+        }
     })?;
     c.machine.grow(64 * formula.steps().len())?;
     super::fields::value(c.machine, Ok(Field::formula(Arc::new(formula))))
@@ -131,10 +156,10 @@ fn told(error: &BuildError) -> Box<Mistake> {
 impl<'a> Machine<'a> {
     /// A value of a formula.
     fn formula_value(&mut self, expression: Expression) -> Run<Value> {
-        self.charge(4)?;
-        self.grow(128)?;
+        self.charge(2)?;
+        self.grow(BYTES)?;
         expression.builder().check().map_err(|e| told(&e))?;
-        self.thing(Thing::Expression(expression))
+        Ok(self.charged_thing(Thing::Expression(expression)))
     }
 
     fn as_expression(&self, value: Value) -> Option<&Expression> {
@@ -209,16 +234,13 @@ impl<'a> Machine<'a> {
             BinOp::Multiply => x * y,
             BinOp::Divide => x / y,
             BinOp::Percent => x.modulo(&y),
+            BinOp::FloorDivide => (x / y).floor(),
             BinOp::Less
             | BinOp::LessOrEqual
             | BinOp::Greater
             | BinOp::GreaterOrEqual
             | BinOp::Equal
-            | BinOp::NotEqual => {
-                let m =
-                    mistake("a formula cannot compare: it is written down once, for all points");
-                return Err(m.help("write min(a, b), max(a, b), clamp(x, lo, hi), step(edge, x) or smoothstep(lo, hi, x)"));
-            }
+            | BinOp::NotEqual => return Err(incomparable()),
             _ => return Ok(None),
         };
         self.formula_value(value).map(Some)
@@ -251,9 +273,19 @@ impl<'a> Machine<'a> {
         place: Place,
     ) -> Run<Value> {
         self.charge(4 * arguments.len() as u64)?;
-        let builder = self.formula_of(arguments.iter().map(|a| a.value));
+        let items = arguments.iter().filter_map(|a| self.store.items(a.value));
+        let items: u64 = items.map(|i| i.len() as u64).sum();
+        self.charge(items)?;
+        let builder = self
+            .formula_of(arguments.iter().map(|a| a.value))
+            .or_else(|| {
+                let items = arguments.iter().filter_map(|a| self.store.items(a.value));
+                self.formula_of(items.flatten().copied())
+            });
         let plain = builder.is_none();
         let builder = builder.unwrap_or_default();
+        let listed = self.listed(function, arguments);
+        let arguments = listed.as_deref().unwrap_or(arguments);
         let mut sorted: Vec<Option<Expression>> =
             vec![None; function.params.len().max(arguments.len())];
         for (i, argument) in arguments.iter().enumerate() {
@@ -317,13 +349,33 @@ impl<'a> Machine<'a> {
         self.formula_value(value)
     }
 
+    /// `min([a, b, c])` is `min(a, b, c)`, as it is for numbers.
+    fn listed(&self, function: &Function, arguments: &[Argument<'a>]) -> Option<Vec<Argument<'a>>> {
+        let [one] = arguments else { return None };
+        let items = self.store.items(one.value)?;
+        let argument = |value: &Value| Argument {
+            name: None,
+            value: *value,
+            place: one.place,
+        };
+        matches!(function.name, "min" | "max").then(|| items.iter().map(argument).collect())
+    }
+
     /// The function of formulas with this name, if an argument belongs to a formula.
     pub(crate) fn formula_function(
         &self,
         name: &str,
         arguments: &[Argument<'a>],
     ) -> Option<&'static Function> {
-        self.formula_of(arguments.iter().map(|a| a.value))?;
+        let own = self.formula_of(arguments.iter().map(|a| a.value));
+        // a list of any length, where one is taken
+        let listed = || match arguments {
+            [one] if matches!(name, "min" | "max") => {
+                self.formula_of(self.store.items(one.value)?.iter().copied())
+            }
+            _ => None,
+        };
+        own.or_else(listed)?;
         functions().iter().find(|f| f.name == name)
     }
 }

@@ -4,6 +4,7 @@ use super::fields;
 use super::mistake::{Run, mistake};
 use super::native::{Call, Native, slot};
 use super::value::Value;
+use crate::report::Report;
 use std::collections::HashMap;
 use zeroset_field::catalogue::entries::{Catalogue, catalogue};
 use zeroset_field::field::Field;
@@ -39,6 +40,20 @@ pub(crate) const ALL: &[Native] = &[Native {
     run: text,
 }];
 
+/// That a font lacks characters.
+fn lacking(missing: &[char]) -> Report {
+    const MOST: usize = 8;
+    let mut list: Vec<String> = (missing.iter().take(MOST))
+        .map(|c| format!("{} (U+{:04X})", c.escape_debug(), u32::from(*c)))
+        .collect();
+    if missing.len() > MOST {
+        list.push(format!("{} more", missing.len() - MOST));
+    }
+    let message = format!("the font has no glyph for {}", list.join(", "));
+    Report::new(message)
+        .with_help("its sign for a missing glyph stands there; another font may have it: text(..., font = \"file.ttf\")")
+}
+
 fn text(c: &mut Call<'_, '_>) -> Run<Value> {
     let given = c.need("text")?;
     let words = c.text("text", given)?;
@@ -62,6 +77,7 @@ fn text(c: &mut Call<'_, '_>) -> Run<Value> {
             let limit = c.machine.limits.image_bytes;
             let read = c.machine.draft.files.read(&name, limit, "image_bytes");
             bytes = read.map_err(|e| mistake(e.to_string()).at(given.place))?;
+            c.machine.charge(bytes.len() as u64 / 256)?;
             Font::new(&bytes, 0)
         }
     };
@@ -69,6 +85,10 @@ fn text(c: &mut Call<'_, '_>) -> Run<Value> {
     let set = font
         .and_then(|f| f.set(&words, &layout))
         .map_err(|e| mistake(e.to_string()).at(given.place))?;
+    if !set.missing.is_empty() {
+        let place = given.place;
+        c.machine.draft.warn(lacking(&set.missing), place);
+    }
     let outline = catalogue()
         .primitive("outline")
         .ok_or_else(|| mistake("letters have no outlines here"))?;

@@ -1,5 +1,6 @@
 //! The interpreter's state: values, variables, and the budget that every step is charged to.
 
+use super::depth::Depth;
 use super::mistake::{Run, mistake};
 use super::module::Module;
 use super::scope::Locals;
@@ -10,6 +11,7 @@ use crate::report::Place;
 use starlark_syntax::codemap::Span;
 use starlark_syntax::syntax::ast::{AstExpr, AstStmt};
 use std::collections::HashMap;
+use std::rc::Rc;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -79,6 +81,9 @@ pub(crate) struct Machine<'a> {
     pub(crate) frame: Option<u32>,
     pub(crate) module: u32,
     pub(crate) calls: u64,
+    pub(crate) depth: Depth,
+    /// The variables of functions and comprehensions, by where they are in the syntax tree.
+    locals: HashMap<usize, Locals<'a>>,
     ticks: u64,
     heap: u64,
     nodes: u64,
@@ -100,6 +105,8 @@ impl<'a> Machine<'a> {
             frame: None,
             module: 0,
             calls: 0,
+            depth: Depth::new(),
+            locals: HashMap::new(),
             ticks: 0,
             heap: 0,
             nodes: 0,
@@ -115,6 +122,38 @@ impl<'a> Machine<'a> {
             file,
             start: span.begin().get(),
             end: span.end().get(),
+        }
+    }
+
+    /// Runs `work` so many levels deeper.
+    #[inline]
+    pub(crate) fn deeper<T>(
+        &mut self,
+        levels: u32,
+        work: impl FnOnce(&mut Self) -> Run<T>,
+    ) -> Run<T> {
+        let result = self.depth.enter(levels).and_then(|()| work(self));
+        self.depth.leave(levels);
+        result
+    }
+
+    /// The variables of a piece of the syntax tree, found once: it may be run very often.
+    pub(crate) fn locals_of<T>(
+        &mut self,
+        piece: &'a T,
+        find: impl FnOnce() -> Locals<'a>,
+    ) -> Locals<'a> {
+        let place = std::ptr::from_ref(piece).addr();
+        Rc::clone(self.locals.entry(place).or_insert_with(find))
+    }
+
+    /// Python's truth.
+    pub(crate) fn truth(&self, value: Value) -> Run<bool> {
+        match value {
+            Value::Thing(i) if matches!(self.store.thing(i), Thing::Expression(_)) => {
+                Err(super::formulas::undecided())
+            }
+            _ => Ok(self.store.is_true(value)),
         }
     }
 
@@ -268,7 +307,12 @@ impl<'a> Machine<'a> {
 
     pub(crate) fn thing(&mut self, thing: Thing) -> Run<Value> {
         self.grow(size_of::<Thing>())?;
-        Ok(Value::Thing(push(&mut self.store.things, thing)))
+        Ok(self.charged_thing(thing))
+    }
+
+    /// As [`Self::thing`], of what was charged already.
+    pub(crate) fn charged_thing(&mut self, thing: Thing) -> Value {
+        Value::Thing(push(&mut self.store.things, thing))
     }
 
     pub(crate) fn bound(

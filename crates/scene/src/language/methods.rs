@@ -279,9 +279,11 @@ fn receiver(c: &mut Call<'_, '_>) -> Run<Arc<str>> {
     Ok(text)
 }
 
-fn part(c: &Call<'_, '_>, name: &str) -> Run<Arc<str>> {
+fn part(c: &mut Call<'_, '_>, name: &str) -> Run<Arc<str>> {
     let given = c.need(name)?;
-    c.text(name, given)
+    let part = c.text(name, given)?;
+    c.machine.charge(part.len() as u64 / 16)?;
+    Ok(part)
 }
 
 /// A text made from a text; letters may grow threefold when their case changes.

@@ -9,6 +9,8 @@
 //! | file | what |
 //! | --- | --- |
 //! | `module` | parsing, and refusing what nests too deeply |
+//! | `letters` | names with letters beyond ASCII |
+//! | `depth` | the one budget for what is inside each other |
 //! | `scope` | which names belong to whom |
 //! | `machine` | the state of a running script and its budget |
 //! | `run`, `calls`, `operators`, `sequences`, `text` | the language itself |
@@ -19,9 +21,11 @@
 
 mod builtins;
 mod calls;
+pub(crate) mod depth;
 mod fields;
 mod formulas;
 mod lettering;
+mod letters;
 mod machine;
 mod materials;
 mod math;

@@ -152,12 +152,17 @@ impl<'a> Machine<'a> {
         let m = mistake(format!("`{}` does not work between {l} and {r}", op.trim()));
         let field =
             |v| matches!(v, Value::Thing(i) if matches!(self.store.thing(i), Thing::Field(_)));
+        let symbol =
+            |v| matches!(v, Value::Thing(i) if matches!(self.store.thing(i), Thing::Expression(_)));
         match op.trim() {
             "+" if field(left) && field(right) => {
                 m.help("a | b joins two fields, a - b takes the second one away")
             }
             "*" if field(left) || field(right) => {
                 m.help("a.scale(2) makes a field larger, a & b keeps what lies in both")
+            }
+            "|" | "&" | "^" if symbol(left) || symbol(right) => {
+                m.help("min(a, b) joins two formulas, max(a, b) keeps what lies in both")
             }
             "+" if matches!(left, Value::Text(_)) => m.help("str(...) makes a text of a number"),
             _ => m,
@@ -209,6 +214,7 @@ impl<'a> Machine<'a> {
     pub(crate) fn equal(&mut self, a: Value, b: Value, depth: u32) -> Run<bool> {
         self.charge(1)?;
         self.check_depth(depth)?;
+        self.check_decided(a, b)?;
         Ok(match (a, b) {
             (Value::None, Value::None) => true,
             (Value::Bool(a), Value::Bool(b)) => a == b,
@@ -264,6 +270,7 @@ impl<'a> Machine<'a> {
     pub(crate) fn order(&mut self, a: Value, b: Value, depth: u32) -> Run<Ordering> {
         self.charge(1)?;
         self.check_depth(depth)?;
+        self.check_decided(a, b)?;
         match (a, b) {
             (Value::Int(_) | Value::Float(_), Value::Int(_) | Value::Float(_)) => {
                 compare_numbers(a, b)
@@ -292,6 +299,17 @@ impl<'a> Machine<'a> {
         }
     }
 
+    /// Refuses to compare a value of a formula with a number or another one: which is larger depends on the point.
+    fn check_decided(&self, a: Value, b: Value) -> Run<()> {
+        let symbol =
+            |v| matches!(v, Value::Thing(i) if matches!(self.store.thing(i), Thing::Expression(_)));
+        let number = |v| matches!(v, Value::Int(_) | Value::Float(_) | Value::Bool(_)) || symbol(v);
+        if (symbol(a) && number(b)) || (symbol(b) && number(a)) {
+            return Err(super::formulas::incomparable());
+        }
+        Ok(())
+    }
+
     fn check_depth(&self, depth: u32) -> Run<()> {
         if depth > MAX_DEPTH {
             Err(mistake("these values are nested too deeply to be compared"))
@@ -308,7 +326,8 @@ impl<'a> Machine<'a> {
     fn contains(&mut self, container: Value, item: Value) -> Run<bool> {
         match (container, item) {
             (Value::Text(t), Value::Text(part)) => {
-                self.charge(self.store.text(t).len() as u64 / 16)?;
+                let both = self.store.text(t).len() + self.store.text(part).len();
+                self.charge(both as u64 / 16)?;
                 Ok(self.store.text(t).contains(&**self.store.text(part)))
             }
             (Value::Dict(d), _) => {

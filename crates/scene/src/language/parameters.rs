@@ -102,11 +102,13 @@ fn choice(c: &mut Call<'_, '_>) -> Run<Value> {
         .machine
         .collect(given.value)
         .map_err(|_| c.unfit("options", "a list of texts", given))?;
-    let options = items.into_iter().map(|value| {
-        c.text("options", Given { value, ..given })
-            .map(|t| t.to_string())
-    });
-    let options = options.collect::<Run<Vec<String>>>()?;
+    let mut options = Vec::with_capacity(items.len());
+    for value in items {
+        let text = c.text("options", Given { value, ..given })?;
+        c.machine.charge(text.len() as u64 / 16)?;
+        c.machine.grow(2 * text.len())?;
+        options.push(text.to_string());
+    }
     let Some(first) = options.first().cloned() else {
         return Err(mistake("`options` of choice() needs at least one word").at(given.place));
     };
@@ -141,10 +143,7 @@ fn parameter(c: &mut Call<'_, '_>, control: Control, default: Setting) -> Run<Se
         None => default.clone(),
         Some(text) => read(&name, text, &control)?,
     };
-    let place = c.machine.draft.sources.get(c.place.file as usize).map(|s| {
-        let (line, column) = s.position(c.place.start as usize);
-        (s.name.clone(), line as u32, column as u32)
-    });
+    let place = c.machine.draft.position(c.place);
     let parameter = Parameter {
         name: name.clone(),
         control,
@@ -187,8 +186,15 @@ fn read(name: &str, text: &str, control: &Control) -> Run<Setting> {
             if options.iter().any(|o| o == text) {
                 return Ok(Setting::Text(text.to_string()));
             }
+            const MOST: usize = 16;
             let help = suggestion(text, options.iter().map(String::as_str));
-            Err(unfit(format!("one of {}", options.join(", "))).maybe_help(help))
+            let wanted = match options.len() {
+                n if n > MOST || options.iter().any(|o| o.len() > 64) => {
+                    format!("one of its {n} options")
+                }
+                _ => format!("one of {}", options.join(", ")),
+            };
+            Err(unfit(wanted).maybe_help(help))
         }
         Control::Toggle => match text.trim().to_lowercase().as_str() {
             "true" | "on" | "yes" | "1" => Ok(Setting::Flag(true)),

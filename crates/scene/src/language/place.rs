@@ -4,6 +4,7 @@ use super::fields;
 use super::mistake::{Run, mistake};
 use super::native::{Call, Given, Native, Slot, slot};
 use super::value::{Thing, Value};
+use zeroset_field::catalogue::Dimension;
 use zeroset_field::field::Paint;
 use zeroset_field::placement::Placement;
 use zeroset_field::repetition::{MAX_COPIES, Polar, Repetition};
@@ -90,7 +91,7 @@ pub(crate) const METHODS: &[Native] = &[
     method!(
         "Copies",
         "polar",
-        "Copies of the shape around the y axis, the first one where it is.",
+        "Copies of the shape around the y axis, the first one where it is. Those of a plane shape stay in its plane, around z.",
         [slot("count", "", "Number of copies.")],
         |c| {
             c.need("count")?;
@@ -196,11 +197,20 @@ fn turn(c: &mut Call<'_, '_>) -> Run<Value> {
 }
 
 fn repeat(c: &mut Call<'_, '_>) -> Run<Value> {
+    let shape = c.shape()?;
+    // one number for all axes means those of the plane where the shape is plane
+    let plane = shape.facts().dimension == Dimension::Two;
+    let one = |given: Given| matches!(given.value, Value::Int(_) | Value::Float(_));
+    let each = |c: &Call<'_, '_>, param: &str, given: Given| -> Run<[f64; 3]> {
+        let mut numbers = each_axis(c, param, given, 0.0, 1e6)?;
+        if plane && one(given) {
+            numbers[2] = 0.0;
+        }
+        Ok(numbers)
+    };
     let spacing = c.need("spacing")?;
-    let spacing = each_axis(c, "spacing", spacing, 0.0, 1e6)?;
-    let vary = c
-        .get("vary")
-        .map_or(Ok([0.0; 3]), |g| each_axis(c, "vary", g, 0.0, 1e6))?;
+    let spacing = each(c, "spacing", spacing)?;
+    let vary = c.get("vary").map_or(Ok([0.0; 3]), |g| each(c, "vary", g))?;
     let count = match c.get("count") {
         None => [0; 3],
         Some(given) => {
@@ -214,7 +224,6 @@ fn repeat(c: &mut Call<'_, '_>) -> Run<Value> {
         }
     };
     let seed = c.count_or("seed", 0, 0, u32::MAX)?;
-    let shape = c.shape()?;
     fields::value(
         c.machine,
         shape.repeat(Repetition {

@@ -1,9 +1,10 @@
 //! Statements and expressions.
 
+use super::depth::CALL;
 use super::machine::{Body, Function, Machine, Param, ParamKind};
 use super::mistake::{Mistake, Run, mistake};
 use super::operators::binary;
-use super::scope::{comprehension_names, locals};
+use super::scope::{comprehension_names, find, locals};
 use super::value::Value;
 use starlark_syntax::syntax::ast::{
     AssignOp, AssignTargetP, AstAssignTarget, AstExpr, AstLiteral, AstNoPayload, AstParameter,
@@ -28,12 +29,21 @@ impl<'a> Machine<'a> {
     /// Runs a module from its first to its last statement.
     pub(crate) fn run_module(&mut self, module: u32) -> Run<()> {
         (self.module, self.frame) = (module, None);
-        let statement = self.modules[module as usize].ast.statement();
+        let statement = &self.modules[module as usize].statement;
         self.statement(statement).map(|_| ())
     }
 
     pub(crate) fn statement(&mut self, stmt: &'a AstStmt) -> Run<Flow> {
-        self.charge(1).map_err(|m| m.at(self.place(stmt.span)))?;
+        let ready = self.charge(1).and_then(|()| self.depth.enter(1));
+        let result = match ready {
+            Ok(()) => self.run_statement(stmt),
+            Err(m) => Err(m.at(self.place(stmt.span))),
+        };
+        self.depth.leave(1);
+        result
+    }
+
+    fn run_statement(&mut self, stmt: &'a AstStmt) -> Run<Flow> {
         match &stmt.node {
             StmtP::Statements(all) => {
                 for s in all {
@@ -79,7 +89,7 @@ impl<'a> Machine<'a> {
                 return Ok(Flow::Return(value));
             }
             StmtP::Def(def) => {
-                let names = locals(&def.params, Some(&def.body));
+                let names = self.locals_of(&*def.body, || locals(&def.params, Some(&def.body)));
                 let params = self.params(&def.params)?;
                 let (module, frame) = (self.module, self.frame);
                 let name = def.name.node.ident.as_str();
@@ -104,7 +114,7 @@ impl<'a> Machine<'a> {
 
     fn condition(&mut self, e: &'a AstExpr) -> Run<bool> {
         let value = self.eval(e)?;
-        Ok(self.store.is_true(value))
+        self.truth(value).map_err(|m| m.at(self.place(e.span)))
     }
 
     /// Runs `work` for every item; a `return` in it ends the loop and is passed on.
@@ -116,16 +126,18 @@ impl<'a> Machine<'a> {
         let iterable = self.eval(over)?;
         let place = self.place(over.span);
         let mut result = Ok(Flow::Next);
-        self.each(iterable, |m, item| {
-            m.charge(1).map_err(|e| e.at(place))?;
-            match work(m, item) {
-                Ok(Flow::Next | Flow::Continue) => Ok(true),
-                Ok(Flow::Break) => Ok(false),
-                other => {
-                    result = other;
-                    Ok(false)
+        self.deeper(CALL, |m| {
+            m.each(iterable, |m, item| {
+                m.charge(1).map_err(|e| e.at(place))?;
+                match work(m, item) {
+                    Ok(Flow::Next | Flow::Continue) => Ok(true),
+                    Ok(Flow::Break) => Ok(false),
+                    other => {
+                        result = other;
+                        Ok(false)
+                    }
                 }
-            }
+            })
         })
         .map_err(|m| m.at(place))?;
         result
@@ -135,7 +147,7 @@ impl<'a> Machine<'a> {
     fn set(&mut self, name: &'a str, value: Value) {
         if let Some(frame) = self.frame {
             let frame = &mut self.frames[frame as usize];
-            if let Some(i) = frame.names.iter().position(|n| *n == name) {
+            if let Some(i) = find(&frame.names, name) {
                 frame.values[i] = Some(value);
                 return;
             }
@@ -150,7 +162,7 @@ impl<'a> Machine<'a> {
         let mut frame = self.frame;
         while let Some(i) = frame {
             let f = &self.frames[i as usize];
-            if let Some(k) = f.names.iter().position(|n| *n == name) {
+            if let Some(k) = find(&f.names, name) {
                 return f.values[k].ok_or_else(unset);
             }
             frame = f.parent;
@@ -253,7 +265,9 @@ impl<'a> Machine<'a> {
     }
 
     pub(crate) fn eval(&mut self, e: &'a AstExpr) -> Run<Value> {
-        let result = self.charge(1).and_then(|()| self.expression(e));
+        let ready = self.charge(1).and_then(|()| self.depth.enter(1));
+        let result = ready.and_then(|()| self.expression(e));
+        self.depth.leave(1);
         result.map_err(|m: Box<Mistake>| m.at(self.place(e.span)))
     }
 
@@ -268,16 +282,18 @@ impl<'a> Machine<'a> {
                 self.attribute(object, &name.node).map_err(|m| m.at(place))
             }
             ExprP::Op(left, BinOp::And, right) => {
+                let place = self.place(left.span);
                 let left = self.eval(left)?;
-                if self.store.is_true(left) {
+                if self.truth(left).map_err(|m| m.at(place))? {
                     self.eval(right)
                 } else {
                     Ok(left)
                 }
             }
             ExprP::Op(left, BinOp::Or, right) => {
+                let place = self.place(left.span);
                 let left = self.eval(left)?;
-                if self.store.is_true(left) {
+                if self.truth(left).map_err(|m| m.at(place))? {
                     Ok(left)
                 } else {
                     self.eval(right)
@@ -344,7 +360,7 @@ impl<'a> Machine<'a> {
                 self.slice(object, bounds)
             }
             ExprP::Lambda(lambda) => {
-                let names = locals(&lambda.params, None);
+                let names = self.locals_of(&*lambda.body, || locals(&lambda.params, None));
                 let params = self.params(&lambda.params)?;
                 let (module, frame) = (self.module, self.frame);
                 let body = Body::Expression(&lambda.body);
@@ -450,9 +466,10 @@ impl<'a> Machine<'a> {
         }
         // the first sequence is evaluated outside of the comprehension's own variables
         let over = self.eval(&first.over)?;
-        let names = comprehension_names(first, rest);
+        let names = self.locals_of(first, || comprehension_names(first, rest));
+        self.charge(names.len() as u64)?;
         let (values, parent) = (vec![None; names.len()], self.frame);
-        self.in_frame(names.into(), values, parent, |m| {
+        self.in_frame(names, values, parent, |m| {
             m.clauses(first, over, rest, &mut item)
         })
     }
@@ -465,11 +482,13 @@ impl<'a> Machine<'a> {
         item: &mut dyn FnMut(&mut Self) -> Run<()>,
     ) -> Run<()> {
         let place = self.place(head.over.span);
-        self.each(over, |m, value| {
-            m.charge(1).map_err(|e| e.at(place))?;
-            m.assign(&head.var, value)?;
-            m.rest(rest, item)?;
-            Ok(true)
+        self.deeper(CALL, |m| {
+            m.each(over, |m, value| {
+                m.charge(1).map_err(|e| e.at(place))?;
+                m.assign(&head.var, value)?;
+                m.rest(rest, item)?;
+                Ok(true)
+            })
         })
         .map_err(|m| m.at(place))
     }

@@ -2,22 +2,35 @@
 
 use super::mistake::{Run, mistake};
 use crate::report::{Place, suggestion};
+use indexmap::IndexSet;
 use starlark_syntax::syntax::ast::{
     AssignTargetP, AstAssignTarget, AstExpr, AstNoPayload, AstParameter, AstStmt, ClauseP, ExprP,
     ForClauseP, ParameterP, StmtP,
 };
-use std::collections::HashSet;
+use std::collections::HashMap;
 use std::rc::Rc;
 
+/// Different names in the order in which they were found.
+type Names<'a> = IndexSet<&'a str>;
+
 /// The variables of a function, parameters first.
-pub(crate) type Locals<'a> = Rc<[&'a str]>;
+pub(crate) type Locals<'a> = Rc<Names<'a>>;
+
+/// The place of a variable.
+pub(crate) fn find(names: &Names<'_>, name: &str) -> Option<usize> {
+    const FEW: usize = 8;
+    if names.len() <= FEW {
+        return names.iter().position(|n| *n == name);
+    }
+    names.get_index_of(name)
+}
 
 /// The variables of a function.
 pub(crate) fn locals<'a>(params: &'a [AstParameter], body: Option<&'a AstStmt>) -> Locals<'a> {
-    let mut names = Vec::new();
+    let mut names = Names::new();
     for param in params {
         if let Some(ident) = param.node.ident() {
-            add(&mut names, &ident.node.ident);
+            names.insert(&ident.node.ident);
         }
     }
     if let Some(body) = body {
@@ -27,22 +40,16 @@ pub(crate) fn locals<'a>(params: &'a [AstParameter], body: Option<&'a AstStmt>) 
 }
 
 /// The variables of a target such as `(a, b)`.
-pub(crate) fn targets<'a>(target: &'a AstAssignTarget, names: &mut Vec<&'a str>) {
+pub(crate) fn targets<'a>(target: &'a AstAssignTarget, names: &mut Names<'a>) {
     match &target.node {
         AssignTargetP::Tuple(items) => items.iter().for_each(|t| targets(t, names)),
-        AssignTargetP::Identifier(ident) => add(names, &ident.node.ident),
+        AssignTargetP::Identifier(ident) => _ = names.insert(&ident.node.ident),
         AssignTargetP::Index(_) | AssignTargetP::Dot(..) => {}
     }
 }
 
-fn add<'a>(names: &mut Vec<&'a str>, name: &'a str) {
-    if !names.contains(&name) {
-        names.push(name);
-    }
-}
-
 /// The names that a block assigns, nested functions left out.
-fn assigned<'a>(stmt: &'a AstStmt, names: &mut Vec<&'a str>) {
+fn assigned<'a>(stmt: &'a AstStmt, names: &mut Names<'a>) {
     match &stmt.node {
         StmtP::Assign(assign) => targets(&assign.lhs, names),
         StmtP::AssignModify(target, ..) => targets(target, names),
@@ -50,11 +57,8 @@ fn assigned<'a>(stmt: &'a AstStmt, names: &mut Vec<&'a str>) {
             targets(&f.var, names);
             assigned(&f.body, names);
         }
-        StmtP::Def(def) => add(names, &def.name.node.ident),
-        StmtP::Load(load) => load
-            .args
-            .iter()
-            .for_each(|arg| add(names, &arg.local.node.ident)),
+        StmtP::Def(def) => _ = names.insert(&def.name.node.ident),
+        StmtP::Load(load) => names.extend(load.args.iter().map(|arg| &*arg.local.node.ident)),
         _ => stmt.visit_stmt(|s| assigned(s, names)),
     }
 }
@@ -63,9 +67,9 @@ fn assigned<'a>(stmt: &'a AstStmt, names: &mut Vec<&'a str>) {
 pub(crate) struct Check<'a, F> {
     builtin: F,
     file: u32,
-    globals: HashSet<&'a str>,
-    /// Names of functions and comprehensions around, innermost last.
-    around: Vec<Vec<&'a str>>,
+    globals: Names<'a>,
+    /// Names of functions and comprehensions around, with the number of those that have them.
+    around: HashMap<&'a str, u32>,
 }
 
 impl<'a, F: Fn(&str) -> bool> Check<'a, F> {
@@ -76,22 +80,19 @@ impl<'a, F: Fn(&str) -> bool> Check<'a, F> {
         builtin: F,
         all: impl Iterator<Item = &'static str>,
     ) -> Run<()> {
-        let mut names = Vec::new();
+        let mut names = Names::new();
         assigned(module, &mut names);
         let mut check = Check {
             builtin,
             file,
-            globals: names.into_iter().collect(),
-            around: Vec::new(),
+            globals: names,
+            around: HashMap::new(),
         };
         check.stmt(module).map_err(|(name, place)| {
-            let mut names: Vec<&str> = check
-                .around
-                .iter()
-                .flatten()
-                .chain(&check.globals)
-                .copied()
-                .collect();
+            let around = check.around.keys().copied();
+            let mut names: Vec<&str> = around.chain(check.globals.iter().copied()).collect();
+            // in an order that is the same each time
+            names.sort_unstable();
             names.extend(all.map(|name| name as &str));
             mistake(format!("there is no `{name}`"))
                 .maybe_help(suggestion(&name, names.iter().copied()))
@@ -152,9 +153,27 @@ impl<'a, F: Fn(&str) -> bool> Check<'a, F> {
                 self.expr(default)?;
             }
         }
-        self.around.push(locals.to_vec());
+        self.within(&locals, body)
+    }
+
+    /// Checks what sees these names. After a mistake they stay: they are what might have been meant.
+    fn within(
+        &mut self,
+        names: &Names<'a>,
+        body: impl FnOnce(&mut Self) -> Result<(), (String, Place)>,
+    ) -> Result<(), (String, Place)> {
+        for name in names {
+            *self.around.entry(*name).or_default() += 1;
+        }
         body(self)?;
-        self.around.pop();
+        for name in names {
+            if let Some(count) = self.around.get_mut(name) {
+                *count -= 1;
+                if *count == 0 {
+                    self.around.remove(name);
+                }
+            }
+        }
         Ok(())
     }
 
@@ -177,23 +196,22 @@ impl<'a, F: Fn(&str) -> bool> Check<'a, F> {
         items: &[&'a AstExpr],
     ) -> Result<(), (String, Place)> {
         self.expr(&first.over)?;
-        self.around.push(comprehension_names(first, rest));
-        for clause in rest {
-            match clause {
-                ClauseP::For(f) => self.expr(&f.over)?,
-                ClauseP::If(cond) => self.expr(cond)?,
+        self.within(&comprehension_names(first, rest), |c| {
+            for clause in rest {
+                match clause {
+                    ClauseP::For(f) => c.expr(&f.over)?,
+                    ClauseP::If(cond) => c.expr(cond)?,
+                }
             }
-        }
-        items.iter().try_for_each(|e| self.expr(e))?;
-        self.around.pop();
-        Ok(())
+            items.iter().try_for_each(|e| c.expr(e))
+        })
     }
 
     fn expr(&mut self, expr: &'a AstExpr) -> Result<(), (String, Place)> {
         match &expr.node {
             ExprP::Identifier(ident) => {
                 let name = ident.node.ident.as_str();
-                let known = self.around.iter().any(|names| names.contains(&name))
+                let known = self.around.contains_key(name)
                     || self.globals.contains(name)
                     || (self.builtin)(name);
                 let (start, end) = (ident.span.begin().get(), ident.span.end().get());
@@ -237,13 +255,13 @@ impl<'a, F: Fn(&str) -> bool> Check<'a, F> {
 pub(crate) fn comprehension_names<'a>(
     first: &'a ForClauseP<AstNoPayload>,
     rest: &'a [ClauseP<AstNoPayload>],
-) -> Vec<&'a str> {
-    let mut names = Vec::new();
+) -> Locals<'a> {
+    let mut names = Names::new();
     targets(&first.var, &mut names);
     for clause in rest {
         if let ClauseP::For(f) = clause {
             targets(&f.var, &mut names);
         }
     }
-    names
+    names.into()
 }

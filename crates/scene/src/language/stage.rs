@@ -224,10 +224,8 @@ fn show(c: &mut Call<'_, '_>) -> Run<Value> {
         None => (count + 1).to_string(),
     };
     let occlusion = c.get("ao").map(|g| c.occlusion("ao", g)).transpose()?;
-    let source = &c.machine.draft.sources[c.place.file as usize];
-    let (line, column) = source.position(c.place.start as usize);
-    let place = Some((source.name.clone(), line as u32, column as u32));
-    c.machine.grow(512)?;
+    let place = c.machine.draft.position(c.place);
+    c.machine.grow(512 + name.len())?;
     c.machine.draft.objects.push(Object {
         name,
         field,

@@ -5,6 +5,7 @@ use crate::console::Console;
 use crate::failure::{Exit, Failure};
 use std::io::Write;
 use zeroset_output::atomic::{probe, write_atomically};
+use zeroset_scene::report::Report;
 use zeroset_shader::export::{ExportError, glsl, wgsl};
 
 /// Prints a scene as one file of shader text.
@@ -13,7 +14,17 @@ pub(crate) fn run(args: &Export, console: &Console) -> Result<(), Failure> {
         probe(path)?;
     }
     let options = crate::scene::options(&args.scene, args.size.map(|s| s.0))?;
-    let scene = crate::scene::loaded(&args.scene, &options, console)?.scene;
+    let loaded = crate::scene::loaded(&args.scene, &options, console)?;
+    let scene = loaded.scene;
+    if loaded.animated {
+        let what = if args.language.glsl { "GLSL" } else { "WGSL" };
+        let text = format!(
+            "the scene asks for time(), and the {what} holds it as it is at {} seconds: the shader does not move",
+            options.time
+        );
+        let warning = Report::new(text).with_help("choose the moment with --time");
+        console.warn(&warning.as_warning());
+    }
     let text = if args.language.glsl {
         glsl(&scene)?
     } else {
