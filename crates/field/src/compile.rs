@@ -39,6 +39,10 @@ struct Lowering<'l> {
     /// Shared nodes: the value of a node at a point.
     known: HashMap<(usize, u32), u32>,
     limits: &'l Limits,
+    /// Whether a value may need a division by its slope, by the kinds of nodes alone.
+    steep: bool,
+    /// The largest slope that a value is divided by.
+    slope: f64,
 }
 
 pub(crate) fn compile(field: &Field, limits: &Limits) -> Result<Program, CompileError> {
@@ -51,6 +55,8 @@ pub(crate) fn compile(field: &Field, limits: &Limits) -> Result<Program, Compile
         params: Vec::new(),
         known: HashMap::new(),
         limits,
+        steep: false,
+        slope: 1.0,
     };
     let value = l.field(field, INPUT)?;
     let result = l.unit(field, value)?;
@@ -63,6 +69,8 @@ pub(crate) fn compile(field: &Field, limits: &Limits) -> Result<Program, Compile
         params: l.params.into(),
         bounds: facts.bounds,
         exactness: facts.exactness,
+        steep: l.steep,
+        slope: l.slope,
     })
 }
 
@@ -200,6 +208,8 @@ impl Lowering<'_> {
         if !facts.steep {
             return Ok(value);
         }
+        self.steep = true;
+        self.slope = self.slope.max(facts.slope);
         // a hair less, for the rounding to single precision
         let scale = if facts.slope > 0.0 {
             (1.0 - 1e-6) / facts.slope

@@ -8,6 +8,7 @@
 //! that may be above 1.
 
 use crate::bounds::{Aabb, Exactness};
+use crate::catalogue::entries::catalogue;
 use crate::compile;
 use crate::field::{Field, Paint};
 use std::sync::Arc;
@@ -79,7 +80,15 @@ pub struct Program {
     pub(crate) params: Arc<[f32]>,
     pub(crate) bounds: Aabb,
     pub(crate) exactness: Exactness,
+    pub(crate) steep: bool,
+    pub(crate) slope: f64,
 }
+
+/// Programs that divide by more than this hold a field that may be far less than the distance.
+const CLOSE: f64 = 1.25;
+
+/// However loose a bound is, a ray gets no more steps than this times those that it may take.
+const MOST_PATIENT: f64 = 64.0;
 
 /// What a program may take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -163,5 +172,40 @@ impl Program {
     /// How true its distance is.
     pub fn exactness(&self) -> Exactness {
         self.exactness
+    }
+
+    /// The largest Lipschitz constant that a part of it is divided by, at least 1: near a surface its value may be this much
+    /// less than the distance, and rays take that many more steps.
+    pub fn slope(&self) -> f64 {
+        self.slope
+    }
+
+    /// Whether it may divide by a Lipschitz constant above 1: a question of its structure, whatever its numbers.
+    pub fn is_steep(&self) -> bool {
+        self.steep
+    }
+
+    /// Whether its value is near enough to the distance to be shown as one. What is shown of another is the value over the
+    /// length of its gradient, which does not depend on the constant that it was divided by.
+    pub fn is_close(&self) -> bool {
+        self.slope <= CLOSE
+    }
+
+    /// How many evaluations a ray may take where it may take `steps` of a field whose value is the distance: one that is less
+    /// gets as many more as its slope, within reason.
+    pub fn patient(&self, steps: u32) -> u32 {
+        let fractal = if self.is_fractal() { 4.0 } else { 1.0 };
+        (f64::from(steps) * self.slope.clamp(fractal, MOST_PATIENT)) as u32
+    }
+
+    /// Whether a part of it is an estimate of the distance to a set without an end to its detail: rays end where its value
+    /// is less than the footprint of a pixel, for there is always more to be found within it.
+    pub fn is_fractal(&self) -> bool {
+        let primitives = &catalogue().primitives;
+        (self.structure.values.instructions.iter()).any(|i| match i.operation {
+            Operation::Leaf(code) => (primitives.iter())
+                .any(|p| p.code == code && p.exactness == Exactness::Estimate),
+            _ => false,
+        })
     }
 }

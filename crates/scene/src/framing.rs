@@ -9,8 +9,8 @@ use zeroset_field::bounds::Aabb;
 const THREE_QUARTERS: DVec3 = DVec3::new(0.62, 0.48, 1.0);
 /// Room around what is seen.
 const MARGIN: f64 = 1.06;
-/// Where rays end at the earliest.
-const FAR: f64 = 1000.0;
+/// Rays end this many times farther than what is to be seen: an endless floor is endless, whatever the units.
+const FAR: f64 = 200.0;
 
 /// The camera of a view; what the view leaves out follows from what is to be seen. Depends on nothing else.
 pub(crate) fn camera(
@@ -22,8 +22,13 @@ pub(crate) fn camera(
         Some(b) => (DVec3::from(b.centre()), DVec3::from(b.half())),
         None => (DVec3::ZERO, DVec3::ONE),
     };
-    // a point would be looked at from no distance
-    let half = half.max(DVec3::splat(1e-3 * centre.abs().max_element().max(1.0)));
+    // a point would be looked at from no distance, and single precision sees nothing smaller
+    let least = if half.max_element() > 0.0 {
+        1e-3 * half.max_element()
+    } else {
+        1e-3
+    };
+    let half = half.max(DVec3::splat(least.max(1e-5 * centre.abs().max_element())));
     let target = view.target.unwrap_or(centre);
     let back = match (view.eye, view.direction) {
         _ if view.axes.is_some() => view.axes.unwrap_or_default().z_axis,
@@ -42,7 +47,7 @@ pub(crate) fn camera(
     let lens = view.lens();
     let eye = view.eye.unwrap_or(target + axes.z_axis * fit);
     let reach = (eye - centre).length() + half.length();
-    let far = view.far.unwrap_or_else(|| FAR.max(4.0 * reach));
+    let far = view.far.unwrap_or(FAR * reach);
     if !(eye.is_finite() && axes.is_finite() && view.near < far) {
         return Err("the camera must have finite numbers and `near` below `far`".into());
     }

@@ -214,7 +214,7 @@ impl Default for Settings {
             prepass: true,
             max_steps: 256,
             hit_selection: true,
-            discontinuity_reduction: 2,
+            discontinuity_reduction: 0,
             footprint: 0.5,
             normals: Normals::Exact,
             shading: Shading::Phong,

@@ -45,15 +45,19 @@ pub struct View {
     pub near: f32,
     /// Rays end here at the latest.
     pub far: f32,
-    /// Full width of a pixel along its ray.
+    /// Full width of a pixel along the ray through the middle of the picture; see [`View::narrow`].
     pub pixel: Linear,
-    /// A value of the field below this is a hit.
+    /// What single precision cannot tell apart along a ray.
+    pub rounding: Linear,
+    /// Nearer than this to the surface a ray is under its footprint: `footprint` pixel widths in the middle of the picture, and
+    /// what rounding adds.
     pub threshold: Linear,
+    /// Share of a pixel's width that is its footprint.
+    footprint: f32,
 }
 
 impl View {
-    /// `footprint`: a hit is nearer to the surface than this many pixel widths, but never nearer than single precision can
-    /// tell.
+    /// `footprint`: what is nearer to a ray than this many pixel widths is below what the picture shows.
     pub fn new(camera: &Camera, [width, height]: [u32; 2], footprint: f32) -> View {
         let (slope, constant) = camera.pixel_width(height);
         let pixel = Linear { slope, constant };
@@ -65,11 +69,13 @@ impl View {
         } else {
             scale * half[0].hypot(half[1])
         };
+        let rounding = Linear {
+            slope: ROUNDING,
+            constant: (ROUNDING * (camera.eye.length() + aside)).max(f32::MIN_POSITIVE),
+        };
         let threshold = Linear {
-            slope: footprint * slope + ROUNDING,
-            constant: (footprint * constant)
-                .max(ROUNDING * (camera.eye.length() + aside))
-                .max(f32::MIN_POSITIVE),
+            slope: footprint * slope + rounding.slope,
+            constant: footprint * constant + rounding.constant,
         };
         View {
             pinhole,
@@ -82,8 +88,44 @@ impl View {
             near: camera.near,
             far: camera.far,
             pixel,
+            rounding,
             threshold,
+            footprint,
         }
+    }
+
+    /// How much narrower the footprint of a pixel is along `ray` (what [`View::ray`] gave) than in the middle of the
+    /// picture, for the same distance: pixels have equal sides on a plane, which a ray at the angle a meets cos a later and
+    /// aslant.
+    #[inline(always)]
+    pub fn narrow<R: Real<Scalar = f32>>(&self, ray: Vec3<R>) -> R {
+        if self.pinhole {
+            let [x, y, z] = self.back;
+            (ray.x * x + ray.y * y + ray.z * z).sq()
+        } else {
+            ray.x.lit(1.0)
+        }
+    }
+
+    /// The radius of this share of the footprint, but for what rounding adds, in the middle of the picture.
+    pub fn footprint(&self, share: f32) -> Linear {
+        Linear {
+            slope: share * self.footprint * self.pixel.slope,
+            constant: share * self.footprint * self.pixel.constant,
+        }
+    }
+
+    /// The radius of the footprint at distance `t` of a ray that is that [`narrow`](View::narrow).
+    #[inline(always)]
+    pub fn near<R: Real<Scalar = f32>>(&self, t: R, narrow: R) -> R {
+        self.footprint(1.0).at(t * narrow) + self.rounding.at(t)
+    }
+
+    /// The width of a pixel at distance `t` of a ray that is that [`narrow`](View::narrow): the side of a square of its area.
+    #[inline(always)]
+    pub fn width<R: Real<Scalar = f32>>(&self, t: R, narrow: R) -> R {
+        // area cos^3 a: the square root of that, with the square of the cosine given
+        self.pixel.at(t * (narrow * narrow.sqrt()).sqrt())
     }
 
     /// A place on the picture, in pixels from the top left corner, in units of the plane at distance 1 (pinhole) or of the

@@ -121,7 +121,9 @@ impl Parts {
                 (Program::compile(&field, limits)?, Region::new(&Aabb::EMPTY))
             }
         };
-        let (table, frame) = tables(scene, frame(scene, &region));
+        let (table, mut frame) = tables(scene, frame(scene, &region));
+        frame.max_steps = program.patient(scene.settings.max_steps);
+        frame.quality = u32::from(program.is_fractal()) | u32::from(program.is_close()) << 1;
         Ok(Parts {
             key: Key::new(scene, &program, form, table.len()),
             frame,
@@ -217,6 +219,8 @@ fn frame(scene: &Scene, region: &Region) -> Frame {
         max_steps: settings.max_steps.max(1),
         pixel: [view.pixel.slope, view.pixel.constant],
         threshold: [view.threshold.slope, view.threshold.constant],
+        rounding: [view.rounding.slope, view.rounding.constant],
+        footprint: settings.footprint,
         size: settings.size,
         half: view.half,
         march: match settings.march {

@@ -96,8 +96,15 @@ shared! {
         max_steps: u32,
         /// Width of a pixel along its ray: slope and constant.
         pixel: [f32; 2],
-        /// A value of the field below this is a hit: slope and constant.
+        /// Nearer than this to the surface a ray is under its footprint, in the middle of the picture: slope and constant.
         threshold: [f32; 2],
+        /// What single precision cannot tell apart along a ray: slope and constant.
+        rounding: [f32; 2],
+        /// Share of a pixel's width that is the radius of its footprint.
+        footprint: f32,
+        /// 1 if what is under the footprint is a hit: the field is an estimate of something without an end to its detail. 2 if the
+        /// field's value can be shown as a distance. Both can be so.
+        quality: u32,
         /// The picture's size in pixels.
         size: [u32; 2],
         /// Half of it.

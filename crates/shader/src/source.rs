@@ -22,6 +22,8 @@ use zeroset_scene::settings::{March, Normals, Occlusion, Shading, Shadow};
 pub(crate) struct Key {
     structure: Arc<Structure>,
     interpreted: bool,
+    /// Whether the field's value may be less than the distance.
+    steep: bool,
     /// Whether the parameters fit their uniform buffer.
     uniform_params: bool,
     /// Whether the table fits its uniform buffer.
@@ -43,6 +45,7 @@ impl Key {
             .chain([&scene.settings.occlusion]);
         let mut key = Key {
             interpreted: form == FieldForm::Interpreted,
+            steep: program.is_steep(),
             uniform_params: program.params().len() <= UNIFORM_NUMBERS,
             uniform_table: rows <= UNIFORM_ROWS,
             structure,
@@ -179,6 +182,11 @@ impl Key {
         if !matches!(self.normals, Normals::Exact | Normals::Tetrahedron) {
             stages.push(include_str!("stage/normal_neighbours.wgsl"));
         }
+        stages.push(if self.steep {
+            include_str!("stage/distance_steep.wgsl")
+        } else {
+            include_str!("stage/distance.wgsl")
+        });
         let shadows = self.shadows.iter().any(|&kind| kind != 0);
         if shadows || self.occlusion.iter().any(|kind| HEMISPHERES.contains(kind)) {
             stages.push(include_str!("stage/beam.wgsl"));

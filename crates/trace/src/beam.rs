@@ -8,6 +8,7 @@
 
 use crate::march::{ITERATIONS, ORDINAL, ORDINAL_BITS, age};
 use crate::marcher::Rough;
+use crate::normal::distances;
 use crate::simd::{
     Chosen, INSIDE, along, first_lanes, load, load_words, load3, sided, splat, splat3, store,
     store3,
@@ -18,6 +19,7 @@ use std::ops::Range;
 use zeroset_field::eval::{self, BATCH};
 use zeroset_field::number::lanes::LaneMask;
 use zeroset_field::number::{Lanes, Ops, Real, Vec3};
+use zeroset_scene::view::ROUNDING;
 
 /// Smoothing of the slope along a ray, as in `auto`.
 const BETA: f32 = 0.3;
@@ -27,8 +29,10 @@ const SHARE: f32 = 0.95;
 const STEEPEST: f32 = 0.98;
 /// A ray's first sample is this many offsets from its origin.
 pub(crate) const FIRST: f32 = 2.0;
-/// A value of the field below this many offsets stops a ray that has no penumbra.
+/// A value of an estimate below this many offsets stops a ray that has no penumbra; any other field must change its sign.
 pub(crate) const STOP: f32 = 0.125;
+/// Steps are at least this many offsets long.
+pub(crate) const LEAST: f32 = 1.0 / 32.0;
 
 /// What samples say of the light.
 pub(crate) trait Penumbra<S: Simd>: Copy {
@@ -68,7 +72,8 @@ pub(crate) trait Aim<S: Simd> {
     ) -> (Vec3<Lanes<S>>, Lanes<S>);
 }
 
-/// Finds how much reaches each hit of the range, into `lit`: 0 where the surface faces away. Returns the evaluations.
+/// Finds how much reaches each hit of the range, into `lit`: 0 where the surface faces away. What is seen from inside the solid
+/// is lit as if there were no solid: else it would be dark. Returns the evaluations.
 pub(crate) fn stream<S: Simd, P: Penumbra<S>, A: Aim<S>>(
     s: S,
     penumbra: P,
@@ -94,7 +99,7 @@ pub(crate) fn stream<S: Simd, P: Penumbra<S>, A: Aim<S>>(
                 }
                 sample(s, aim, solid, q);
                 evaluations += q.beams.count as u64;
-                advance(s, penumbra, aim.common().is_none(), q);
+                advance(s, penumbra, aim.common().is_none(), solid.close, q);
                 iteration += 1;
                 retire(s, penumbra, solid.max_steps, iteration, q);
             }
@@ -118,13 +123,22 @@ fn start<S: Simd, P: Penumbra<S>, A: Aim<S>>(
     q: &mut Scratch,
 ) {
     let at = range.start;
-    let (hits, beams) = (&q.hits, &mut *q.beams);
+    let (hits, beams) = (&mut q.hits, &mut *q.beams);
     let (point, normal) = (load3(s, &hits.point, at), load3(s, &hits.normal, at));
     let offset = load(s, &hits.offset, at);
     let origin = along(point, normal, offset);
     let (to, distance) = aim.direction(at, origin, normal);
     let cosine = normal.dot(to);
-    let begin = Chosen::new(cosine.above(0.0) & first_lanes(s, range.len()));
+    let side = load_words(s, &hits.word, at) & INSIDE;
+    let inside = LaneMask(side.simd_gt(S::u32s::splat(s, 0)));
+    let facing = cosine.above(0.0) & first_lanes(s, range.len());
+    let lit = load(s, &hits.lit, at);
+    store(
+        Lanes::select(facing & inside, splat(s, 1.0), lit),
+        &mut hits.lit,
+        at,
+    );
+    let begin = Chosen::new(facing & !inside);
     if begin.none() {
         return;
     }
@@ -134,13 +148,12 @@ fn start<S: Simd, P: Penumbra<S>, A: Aim<S>>(
         .leave(origin, to, splat(s, penumbra.width()), offset)
         .min(distance)
         .min(solid.view.far);
-    let side = load_words(s, &hits.word, at) & INSIDE;
     let ordinal = S::u32s::from_fn(
         s,
         #[inline(always)]
         |k| (at + k) as u32,
     );
-    let word = ordinal | side | (iteration & ITERATIONS) << ORDINAL_BITS;
+    let word = ordinal | (iteration & ITERATIONS) << ORDINAL_BITS;
     begin.put3(origin, &mut beams.origin, n);
     if aim.common().is_none() {
         begin.put3(to, &mut beams.direction, n);
@@ -155,14 +168,18 @@ fn start<S: Simd, P: Penumbra<S>, A: Aim<S>>(
     store(splat(s, 0.0), &mut beams.r, n);
     begin.put(cosine, &mut beams.m, n);
     begin.put(
-        if P::HARD {
+        if !P::HARD {
+            splat(s, 1.0)
+        } else if solid.fractal {
             offset * STOP
         } else {
-            splat(s, 1.0)
+            // behind the surface, beyond rounding
+            (point.x.abs() + point.y.abs() + point.z.abs()) * -ROUNDING
         },
         &mut beams.light,
         n,
     );
+    begin.put(offset * LEAST, &mut beams.least, n);
     begin.put(end, &mut beams.end, n);
     begin.put_words(word, &mut beams.word, n);
     beams.count += begin.count;
@@ -184,19 +201,36 @@ fn sample<S: Simd, A: Aim<S>>(s: S, aim: &A, solid: &Solid<'_>, q: &mut Scratch)
         );
         store3(at, points, i);
     }
-    eval::values(s, solid.program, &mut q.work, beams.count);
+    if solid.close {
+        eval::values(s, solid.program, &mut q.work, beams.count);
+    } else {
+        distances(s, solid, beams.count, &mut q.work);
+    }
 }
 
 #[inline(always)]
-fn advance<S: Simd, P: Penumbra<S>>(s: S, penumbra: P, aimed: bool, q: &mut Scratch) {
-    let (beams, ended, values) = (&mut *q.beams, &mut q.ended, q.work.values());
+fn advance<S: Simd, P: Penumbra<S>>(
+    s: S,
+    penumbra: P,
+    aimed: bool,
+    close: bool,
+    q: &mut Scratch,
+) {
+    let (beams, ended) = (&mut *q.beams, &mut q.ended);
+    // how far rays may go, and what is shown as the distance
+    let (free, shown) = if close {
+        (q.work.values(), q.work.values())
+    } else {
+        (q.work.gradient_values(), q.work.values())
+    };
     let count = beams.count;
     let width = penumbra.width();
     let mut kept = 0;
     for i in (0..count).step_by(S::f32s::LEN) {
         let live = first_lanes(s, count - i);
         let word = load_words(s, &beams.word, i);
-        let f = sided(load(s, &values.0, i), word);
+        let f = sided(load(s, &free.0, i), word);
+        let distance = sided(load(s, &shown.0, i), word);
         let (t, z, r) = (
             load(s, &beams.t, i),
             load(s, &beams.z, i),
@@ -207,26 +241,33 @@ fn advance<S: Simd, P: Penumbra<S>>(s: S, penumbra: P, aimed: bool, q: &mut Scra
             load(s, &beams.light, i),
             load(s, &beams.end, i),
         );
-        let to = t + z;
-        let wide = if P::HARD {
+        let (to, least) = (t + z, load(s, &beams.least, i));
+        // beside a loose bound penumbrae are seen where samples happen to be
+        let wide = if P::HARD || !close {
             splat(s, 0.0)
         } else {
             light * width
         };
         // whether anything between the samples can matter
-        let gap = z.above(r) & ((r + f - z) * 0.5).below(wide * to);
+        let gap = z.above(r) & ((r + f - z) * 0.5).below(wide * to) & z.above(least);
         let rise = ((f - r) * z.max(1e-20).rough_recip()).clamp(-1.0, 1.0);
         let slope = Lanes::select(z.above(0.0), m.mix(rise, BETA), m);
         let slope = Lanes::select(gap, splat(s, -1.0), slope).min(STEEPEST);
-        let darker = Lanes::select(gap, light, penumbra.darken(light, f, to, z, r));
+        let back = if close { z } else { splat(s, 0.0) };
+        let darker = penumbra.darken(light, distance, to, back, r);
+        let darker = Lanes::select(gap, light, darker);
         let dark = !gap & penumbra.dark(darker, f);
         let (t, r) = (Lanes::select(gap, t, to), Lanes::select(gap, r, f));
-        let wide = if P::HARD { wide } else { darker * width };
+        let wide = if P::HARD || !close {
+            wide
+        } else {
+            darker * width
+        };
         let reach = (r - wide * t) * (2.0 * SHARE) * (slope.one_minus() + wide * 2.0).rough_recip();
         // after a gap the step must be the radius itself: no other is sure to be kept
-        let z = Lanes::select(gap, r, reach.max(r));
+        let z = Lanes::select(gap, r, reach.max(r)).max(least);
         // not "above the end": a ray whose numbers are none must end too
-        let within = (t + r).below(end);
+        let within = (t + r.max(0.0)).below(end);
         let on = Chosen::new(live & !dark & within);
         if on.count < S::f32s::LEN {
             let done = Chosen::new(live & (dark | !within));
@@ -247,6 +288,7 @@ fn advance<S: Simd, P: Penumbra<S>>(s: S, penumbra: P, aimed: bool, q: &mut Scra
             if aimed {
                 on.put3(load3(s, &beams.direction, i), &mut beams.direction, kept);
             }
+            on.put(least, &mut beams.least, kept);
             on.put(end, &mut beams.end, kept);
             on.put_words(word, &mut beams.word, kept);
         }
@@ -295,6 +337,7 @@ impl Beams {
             &mut self.r,
             &mut self.m,
             &mut self.light,
+            &mut self.least,
             &mut self.end,
         ]);
         for column in columns {

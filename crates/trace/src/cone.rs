@@ -21,6 +21,8 @@ const SIDES: [usize; 4] = [32, 8, 4, 2];
 const COARSE: [usize; 1] = [8];
 /// A cone ends where its clearance is this share of its radius: with none it would creep up to the surface for ever.
 const NEAR: f32 = 0.3;
+/// Share of that clearance that a step is at least long: longer ones could circle around a surface.
+const LEAST: f32 = 0.5;
 /// Share of a cone's clearance that the cones within it may count on: they lie within it but for rounding.
 const FREE: f32 = 0.98;
 /// Steps of a cone at most. Where they run out its rays start a little earlier.
@@ -196,10 +198,13 @@ fn run<S: Simd, M: Marcher>(
         solid: cells.solid,
         width,
         share,
-        threshold: Linear {
+        near: Linear {
             slope: width.slope * share * NEAR,
-            constant: (width.constant * share * NEAR).max(cells.solid.view.threshold.constant),
+            constant: width.constant * share * NEAR,
         },
+        narrows: false,
+        least: LEAST,
+        touch: true,
         max_steps: STEPS,
     };
     q.next.start[..count].fill(f32::INFINITY);
@@ -227,7 +232,7 @@ struct Found<'a> {
 impl<S: Simd> Sink<S> for Found<'_> {
     #[inline(always)]
     fn found(&mut self, done: Chosen<S>, at: &Arrived<S>) {
-        // all cones and rays within this one keep this far from the surface
+        // all cones and rays within this one keep this far from the surface; a cone that met it at once began too near to tell
         let free = at.clearance.max(0.0) * FREE;
         let mut bits = done.bits();
         while bits != 0 {

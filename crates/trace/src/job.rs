@@ -1,6 +1,6 @@
 //! What is done for a tile: the stages, sample by sample.
 
-use crate::march::{ITERATIONS, ORDINAL};
+use crate::march::ORDINAL;
 use crate::material::{Place, colour as pattern_colour};
 use crate::normal::{normals, place};
 use crate::order::{self, PLACE};
@@ -9,7 +9,7 @@ use crate::renderer::{Done, Picture};
 use crate::sampling::{point, scramble};
 use crate::shade::{Substance, arrival, colour, sky};
 use crate::shadow::{shadows, towards};
-use crate::simd::{constant, load, load3, splat, store, store3};
+use crate::simd::{INSIDE, constant, load, load3, splat, store, store3};
 use crate::tile::{Area, HEIGHT, Hits, Scratch, Solid, WIDTH};
 use crate::{ao, cone, resolve};
 use fearless_simd::{Simd, prelude::*};
@@ -86,12 +86,13 @@ impl<'a> Job<'a> {
         sums: &mut [f32],
         q: &mut Scratch,
     ) -> Done {
-        let solid = Solid {
-            program: &self.picture.program,
-            region: self.picture.region,
-            view: &self.view,
-            max_steps: self.picture.scene.settings.max_steps.clamp(1, ITERATIONS),
-        };
+        let solid = Solid::new(
+            &self.picture.program,
+            self.picture.region,
+            &self.view,
+            self.picture.scene.settings.max_steps,
+            self.samples(),
+        );
         q.planes.clear();
         let mut hits = 0;
         for index in 0..self.samples() {
@@ -153,6 +154,7 @@ impl<'a> Job<'a> {
         place(
             s,
             solid,
+            settings.march,
             settings.discontinuity_reduction,
             self.wants(Plane::Residual),
             q,
@@ -213,6 +215,19 @@ impl<'a> Job<'a> {
             };
             ao::occlusion(s, solid, *method, from..to, q);
             from = to;
+        }
+        if !solid.close {
+            // what was read is no bound: nothing is known to be empty
+            let count = q.hits.count;
+            q.hits.ball[..count].fill(0.0);
+        }
+        // inside a solid there is no sky: it is shown as if there were no solid
+        let hits = &mut q.hits;
+        for i in (0..hits.count).filter(|&i| hits.word[i] & INSIDE != 0) {
+            hits.open[i] = 1.0;
+            for (bent, normal) in hits.bent.iter_mut().zip(&hits.normal) {
+                bent[i] = normal[i];
+            }
         }
     }
 
@@ -370,7 +385,8 @@ impl<'a> Job<'a> {
                 for i in (0..hits.count).step_by(S::f32s::LEN) {
                     let (_, d) = self.view.split(load3(s, &hits.ray, i));
                     let n = load3(s, &hits.normal, i);
-                    let pixel = self.view.pixel.at(load(s, &hits.t, i)) * finer;
+                    let narrow = self.view.narrow(load3(s, &hits.ray, i));
+                    let pixel = self.view.width(load(s, &hits.t, i), narrow) * finer;
                     let mut place = Place::new(load3(s, &hits.point, i), n, d, pixel);
                     if self.picture.has_orbits {
                         let o = &hits.orbit;

@@ -4,6 +4,7 @@ mod ao;
 mod beam;
 pub mod bench;
 mod cone;
+mod isolate;
 mod job;
 mod march;
 mod marcher;

@@ -7,7 +7,7 @@
 //! The word of a ray holds its pixel (12 bits), the iteration in which it began (19 bits, wrapping) and the side that it is
 //! marched on ([`INSIDE`]). Rays are in the order in which they began, so the first ones run out of steps first.
 
-use crate::marcher::{Marcher, Step};
+use crate::marcher::{self, Marcher, Reach, Step};
 use crate::simd::{Chosen, INSIDE, along, first_lanes, load, load_words, load3, sided, store3};
 use crate::tile::{Rays, Solid, Spans};
 use fearless_simd::{Simd, prelude::*};
@@ -15,7 +15,7 @@ use std::ops::Range;
 use zeroset_field::eval::{self, BATCH, Workspace};
 use zeroset_field::number::lanes::LaneMask;
 use zeroset_field::number::{Lanes, Ops, Real, Vec3};
-use zeroset_scene::view::Linear;
+use zeroset_scene::view::{Linear, ROUNDING};
 
 /// Where the pixel (or hit) of a word ends and the iteration begins.
 pub(crate) const ORDINAL_BITS: u32 = 12;
@@ -41,11 +41,14 @@ pub(crate) trait Source<S: Simd> {
 /// Rays that ended.
 pub(crate) struct Arrived<S: Simd> {
     pub(crate) ray: Vec3<Lanes<S>>,
+    /// The last place that is not behind the surface.
     pub(crate) t: Lanes<S>,
-    /// Value of the field, from the side that was marched.
-    pub(crate) f: Lanes<S>,
-    /// How much larger it is than the cone.
+    /// How much farther the place behind the surface is; zero where the ray ended before it.
+    pub(crate) beyond: Lanes<S>,
+    /// How much larger than the cone the field is at `t`, from the side that was marched.
     pub(crate) clearance: Lanes<S>,
+    /// The same at the place behind the surface.
+    pub(crate) behind: Lanes<S>,
     /// Slope of the field along the ray.
     pub(crate) m: Lanes<S>,
     pub(crate) word: S::u32s,
@@ -78,10 +81,37 @@ pub(crate) struct Stream<'a> {
     pub(crate) width: Linear,
     /// Share of its clearance that a cone may go on: 1 / (1 + slope).
     pub(crate) share: f32,
-    /// A clearance below this is a hit.
-    pub(crate) threshold: Linear,
+    /// Radius of the footprint, but for what rounding adds.
+    pub(crate) near: Linear,
+    /// Whether the footprint of a ray is narrower away from the middle of the picture.
+    pub(crate) narrows: bool,
+    /// Share of the footprint that a step is at least long.
+    pub(crate) least: f32,
+    /// Whether a clearance below the footprint is a hit, and not just one below zero.
+    pub(crate) touch: bool,
     /// Evaluations that each may take.
     pub(crate) max_steps: u32,
+}
+
+impl Stream<'_> {
+    /// What is small at the point `p`, at distance `t` along `ray`.
+    #[inline(always)]
+    pub(crate) fn reach<S: Simd>(
+        &self,
+        ray: Vec3<Lanes<S>>,
+        t: Lanes<S>,
+        p: Vec3<Lanes<S>>,
+    ) -> Reach<Lanes<S>> {
+        let view = self.solid.view;
+        let near = self.near.at(if self.narrows { t * view.narrow(ray) } else { t });
+        let rounding = view.rounding.at(t);
+        let size = p.x.abs() + p.y.abs() + p.z.abs();
+        Reach {
+            near: near + rounding,
+            least: near * self.least + rounding,
+            behind: size * (-0.5 * ROUNDING),
+        }
+    }
 }
 
 /// Marches rays or cones number 0 to `count` as far as they have a span. Returns the evaluations.
@@ -171,7 +201,7 @@ fn sample<S: Simd>(s: S, solid: &Solid<'_>, rays: &Rays, work: &mut Workspace) {
     let points = work.points_mut();
     for i in (0..rays.count).step_by(S::f32s::LEN) {
         let (o, d) = solid.view.split(load3(s, &rays.ray, i));
-        let at = along(o, d, load(s, &rays.t, i) + load(s, &rays.z, i));
+        let at = along(o, d, load(s, &rays.t, i) + load(s, &rays.z, i).abs());
         store3(at, points, i);
     }
     eval::values(s, solid.program, work, rays.count);
@@ -188,7 +218,7 @@ fn advance<S: Simd, M: Marcher>(
     work: &Workspace,
     sink: &mut impl Sink<S>,
 ) {
-    let count = rays.count;
+    let (count, points) = (rays.count, work.points());
     let mut kept = 0;
     for i in (0..count).step_by(S::f32s::LEN) {
         let live = first_lanes(s, count - i);
@@ -207,21 +237,23 @@ fn advance<S: Simd, M: Marcher>(
             word | unknown.select(value.0.bitcast::<S::u32s>() & INSIDE, S::u32s::splat(s, 0));
         let first = LaneMask(first);
         let f = sided(value, word);
-        let to = at.t + at.z;
+        let to = at.t + at.z.abs();
+        let ray = load3(s, &rays.ray, i);
         let clearance = (f - how.width.at(to)) * how.share;
-        let next = marcher.advance(at, clearance, how.threshold.at(to), first);
+        let reach = how.reach(ray, to, load3(s, points, i));
+        let next = marcher::advance(marcher, how.touch, at, clearance, reach, first);
         let (step, end) = (next.step, load(s, &rays.end, i));
         // not "above the end": a ray whose numbers are none must end too
-        let within = (step.t + step.r).below(end);
-        let ray = load3(s, &rays.ray, i);
+        let within = (step.t + step.r.max(0.0)).below(end);
         let done = Chosen::new(next.hit & live);
         let on = Chosen::new(live & !next.hit & within);
         if done.count + on.count < S::f32s::LEN || !done.none() {
             let arrived = Arrived {
                 ray,
                 t: step.t,
-                f,
-                clearance,
+                beyond: to - step.t,
+                clearance: step.r,
+                behind: clearance,
                 m: step.m,
                 word,
                 iteration,
@@ -240,7 +272,8 @@ fn advance<S: Simd, M: Marcher>(
         }
         on.put_words(word, &mut rays.word, kept);
         on.put(step.t, &mut rays.t, kept);
-        on.put(step.z.min(end - step.t), &mut rays.z, kept);
+        let rest = end - step.t;
+        on.put(step.z.min(rest).max(-rest), &mut rays.z, kept);
         on.put(step.r, &mut rays.r, kept);
         on.put(step.m, &mut rays.m, kept);
         kept += on.count;

@@ -1,8 +1,14 @@
-//! How far a ray goes from one sample of the field to the next: the marchers, each one formula over any number type.
+//! How far a ray goes from one sample of the field to the next: the marchers, each one formula over any number type; and
+//! what is a hit.
 //!
 //! A marcher keeps the last good place `t` of a ray, the radius `r` of the unbounding sphere there, the step `z` to the next
-//! sample and one number of its own. All but [`Fixed`] take a sample back when its sphere does not overlap the last one:
-//! with the signed test `z > r + f` and never `z > r + |f|`, which walks through flat faces met head-on.
+//! sample and one number of its own. A sample whose sphere does not overlap the last one is taken back: with the signed test
+//! `z > r + f` and never `z > r + |f|`, which walks through flat faces met head-on.
+//!
+//! A ray ends where the field changes its sign. How near it came to a surface says nothing: values are bounds, which may be
+//! far less than the distance, and what a ray passes by it does not hit. Near the surface a ray guesses where the sign
+//! changes, from the slope between its last two samples. Below [`Reach::least`] steps are not proven any more: a body
+//! thinner than that may be passed.
 
 use fearless_simd::{Simd, prelude::*};
 use zeroset_field::number::{Lanes, Real};
@@ -31,7 +37,8 @@ impl<S: Simd> Rough for Lanes<S> {
 pub(crate) struct Step<R> {
     /// Up to here nothing was passed.
     pub(crate) t: R,
-    /// The next sample is this much farther. Zero before the first sample only.
+    /// The next sample is this much farther. Zero before the first sample only. Negative, with the same meaning, where the
+    /// step is a guess of where the sign changes.
     pub(crate) z: R,
     /// Radius of the unbounding sphere at `t`.
     pub(crate) r: R,
@@ -44,39 +51,98 @@ pub(crate) struct Step<R> {
 pub(crate) struct Advance<R: Real> {
     /// The ray afterwards.
     pub(crate) step: Step<R>,
-    /// Whether the sample counts; otherwise it was taken back.
-    pub(crate) kept: R::Mask,
-    /// Whether the surface is found.
+    /// Whether the surface is found: at `step.t`, or between `step.t` and the sample where that is behind the surface.
     pub(crate) hit: R::Mask,
+}
+
+/// What is small at the place of a sample.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reach<R> {
+    /// Radius of the footprint.
+    pub(crate) near: R,
+    /// Steps are never shorter.
+    pub(crate) least: R,
+    /// A value below this is behind the surface; one closer to zero may have its sign from rounding.
+    pub(crate) behind: R,
 }
 
 /// A way to choose steps.
 pub(crate) trait Marcher: Copy + Send + Sync {
+    /// Whether samples between which there may be a surface are taken back.
+    const CAREFUL: bool = true;
     /// How far the first sample is where nothing is nearer than `r`, and `m` is a guess of the slope.
     fn begin<R: Rough>(self, r: R, m: R) -> R;
-    /// What follows from the value `f` at `t + z`, positive on the side that is marched. At the `first` sample `r` is not the
-    /// value at `t` but less. `threshold` is the value that counts as a hit; steps are never much shorter.
-    fn advance<R: Rough>(self, at: Step<R>, f: R, threshold: R, first: R::Mask) -> Advance<R>;
+    /// The next step from a place with the radius `r`, `z` behind one of radius `before`; its own number. After the `first`
+    /// sample there is none before.
+    fn next<R: Rough>(self, r: R, z: R, before: R, m: R, first: R::Mask) -> (R, R);
+    /// The marcher's own number after a sample was taken back.
+    fn back<R: Rough>(self, m: R) -> R {
+        m
+    }
 }
 
-/// Share of the threshold that a step is at least long. Longer ones could circle around a surface; with none, a ray that
-/// touches a surface would stand still.
-const LEAST: f32 = 0.5;
 /// Steeper slopes along the ray count as this: a step is at most a hundred radii long.
 const STEEPEST: f32 = 0.98;
+/// A guess goes this much farther than where the sign should change, so that it does.
+const BEYOND: f32 = 1.1;
+/// Guesses are at most this many footprints long.
+const LONGEST: f32 = 64.0;
 
-/// Keeps or takes back the sample: place, radius and whether it was kept.
+/// What follows from the value `f`, positive on the side that is marched, at the end of the step. `touch`: whether the
+/// surface is found already where `f` is less than the footprint, as for cones and for fractals.
 #[inline(always)]
-fn settle<R: Real<Scalar = f32>>(at: Step<R>, f: R, apart: R::Mask) -> (R, R, R::Mask) {
-    let t = R::select(apart, at.t, at.t + at.z);
-    let r = R::select(apart, at.r, f);
-    (t, r, !apart)
-}
-
-/// Whether the unbounding spheres of the last two samples leave a gap. A step within the first sphere never does.
-#[inline(always)]
-fn apart<R: Real<Scalar = f32>>(at: Step<R>, f: R) -> R::Mask {
-    at.z.above(at.r) & at.z.above(f + at.r)
+pub(crate) fn advance<R: Rough, M: Marcher>(
+    marcher: M,
+    touch: bool,
+    at: Step<R>,
+    f: R,
+    reach: Reach<R>,
+    first: R::Mask,
+) -> Advance<R> {
+    let guessed = at.z.below(0.0);
+    let z = at.z.abs();
+    let crossed = f.below(reach.behind);
+    if !M::CAREFUL {
+        let (next, m) = marcher.next(f, z, at.r, at.m, first);
+        let step = Step {
+            t: R::select(crossed, at.t, at.t + z),
+            z: next,
+            r: R::select(crossed, at.r, f),
+            m,
+        };
+        return Advance { step, hit: crossed };
+    }
+    // a gap between the spheres; none where the step was within the first of them, or the least there is
+    let gap = z.above(at.r) & z.above(f + at.r) & z.above(reach.least);
+    let hit = if touch {
+        !gap & f.below(reach.near)
+    } else {
+        crossed & (!gap | guessed)
+    };
+    let stay = gap | (hit & crossed);
+    let (t, r) = (
+        R::select(stay, at.t, at.t + z),
+        R::select(stay, at.r, f),
+    );
+    let (next, m) = marcher.next(r, z, at.r, at.m, first);
+    let next = R::select(gap, r, next).max(reach.least);
+    let m = R::select(gap, marcher.back(at.m), m);
+    let next = if touch {
+        next
+    } else {
+        // where the surface should be, going on as from the last sample to this one
+        let fall = at.r - f;
+        let guess = r * z * (fall.max(1e-30)).rough_recip() * BEYOND + reach.least;
+        let fit = !gap
+            & !first
+            & f.below(reach.near)
+            & fall.above(0.0)
+            & guess.above(next)
+            & guess.below(reach.near * LONGEST);
+        R::select(fit, -guess, next)
+    };
+    let step = Step { t, z: next, r, m };
+    Advance { step, hit }
 }
 
 /// Steps of the field's value (Hart 1996).
@@ -89,19 +155,8 @@ impl Marcher for Sphere {
         r
     }
     #[inline(always)]
-    fn advance<R: Rough>(self, at: Step<R>, f: R, threshold: R, _first: R::Mask) -> Advance<R> {
-        let kept = at.z.above(f32::NEG_INFINITY);
-        let step = Step {
-            t: at.t + at.z,
-            z: f.max(threshold * LEAST),
-            r: f,
-            m: at.m,
-        };
-        Advance {
-            step,
-            kept,
-            hit: f.below(threshold),
-        }
+    fn next<R: Rough>(self, r: R, _z: R, _before: R, m: R, _first: R::Mask) -> (R, R) {
+        (r, m)
     }
 }
 
@@ -118,21 +173,13 @@ impl Marcher for Relaxed {
         r
     }
     #[inline(always)]
-    fn advance<R: Rough>(self, at: Step<R>, f: R, threshold: R, first: R::Mask) -> Advance<R> {
-        let gap = apart(at, f);
-        let (t, r, kept) = settle(at, f, gap);
-        let m = R::select(gap, r.lit(1.0), R::select(first, r.lit(self.omega), at.m));
-        let step = Step {
-            t,
-            z: (r * m).max(threshold * LEAST),
-            r,
-            m,
-        };
-        Advance {
-            step,
-            kept,
-            hit: kept & f.below(threshold),
-        }
+    fn next<R: Rough>(self, r: R, _z: R, _before: R, m: R, first: R::Mask) -> (R, R) {
+        let m = R::select(first, r.lit(self.omega), m);
+        (r * m, m)
+    }
+    #[inline(always)]
+    fn back<R: Rough>(self, m: R) -> R {
+        m.lit(1.0)
     }
 }
 
@@ -148,25 +195,12 @@ impl Marcher for Enhanced {
         r
     }
     #[inline(always)]
-    fn advance<R: Rough>(self, at: Step<R>, f: R, threshold: R, first: R::Mask) -> Advance<R> {
-        let gap = apart(at, f);
-        let (t, r, kept) = settle(at, f, gap);
+    fn next<R: Rough>(self, r: R, z: R, before: R, m: R, first: R::Mask) -> (R, R) {
         // z = r + w r (d - r0 + r) / (d + r0 - r)
-        let ahead = at.z - at.r + f;
-        let behind = (at.z + at.r - f).max(at.z * (1.0 - STEEPEST)).max(1e-20);
+        let ahead = z - before + r;
+        let behind = (z + before - r).max(z * (1.0 - STEEPEST)).max(1e-20);
         let guess = r + r * (ahead * behind.rough_recip()).max(0.0) * self.share;
-        let z = R::select(first | gap, r, guess);
-        let step = Step {
-            t,
-            z: z.max(threshold * LEAST),
-            r,
-            m: at.m,
-        };
-        Advance {
-            step,
-            kept,
-            hit: kept & f.below(threshold),
-        }
+        (R::select(first, r, guess), m)
     }
 }
 
@@ -183,56 +217,32 @@ impl Marcher for Auto {
         r * (m.one_minus().rough_recip() * 2.0).max(1.0)
     }
     #[inline(always)]
-    fn advance<R: Rough>(self, at: Step<R>, f: R, threshold: R, first: R::Mask) -> Advance<R> {
-        let gap = apart(at, f);
-        let (t, r, kept) = settle(at, f, gap);
-        let slope = ((f - at.r) * at.z.max(1e-20).rough_recip()).clamp(-1.0, 1.0);
-        let m = R::select(first, at.m, at.m.mix(slope, self.beta).min(STEEPEST));
-        // after a gap the step must be the radius itself: no other is sure to be kept
-        let z = R::select(gap, r, self.begin(r, m)).max(threshold * LEAST);
-        let step = Step {
-            t,
-            z,
-            r,
-            m: R::select(gap, r.lit(-1.0), m),
-        };
-        Advance {
-            step,
-            kept,
-            hit: kept & f.below(threshold),
-        }
+    fn next<R: Rough>(self, r: R, z: R, before: R, m: R, first: R::Mask) -> (R, R) {
+        let slope = ((r - before) * z.max(1e-20).rough_recip()).clamp(-1.0, 1.0);
+        let m = R::select(first, m, m.mix(slope, self.beta).min(STEEPEST));
+        (self.begin(r, m), m)
+    }
+    #[inline(always)]
+    fn back<R: Rough>(self, m: R) -> R {
+        m.lit(-1.0)
     }
 }
 
-/// Constant steps to the first change of sign, then bisection (Tomczak 2012, algorithm 2.1; Munini 2021, 3.2).
+/// Constant steps to the first change of sign (Tomczak 2012, algorithm 2.1; Munini 2021, 3.2).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fixed {
     pub(crate) step: f32,
 }
 
 impl Marcher for Fixed {
+    const CAREFUL: bool = false;
     #[inline(always)]
     fn begin<R: Rough>(self, r: R, _m: R) -> R {
         r.lit(0.0)
     }
     #[inline(always)]
-    fn advance<R: Rough>(self, at: Step<R>, f: R, threshold: R, _first: R::Mask) -> Advance<R> {
-        let passed = f.below(0.0);
-        // m tells whether the surface lies within the last step
-        let within = at.m.above(0.0) | passed;
-        let half = at.z.abs() * 0.5;
-        let z = R::select(within, R::select(passed, -half, half), half.lit(self.step));
-        let step = Step {
-            t: at.t + at.z,
-            z,
-            r: f.lit(0.0),
-            m: R::select(within, f.lit(1.0), f.lit(0.0)),
-        };
-        Advance {
-            step,
-            kept: at.z.above(f32::NEG_INFINITY),
-            hit: within & half.below(threshold * 0.5),
-        }
+    fn next<R: Rough>(self, r: R, _z: R, _before: R, m: R, _first: R::Mask) -> (R, R) {
+        (r.lit(self.step), m)
     }
 }
 
@@ -240,21 +250,29 @@ impl Marcher for Fixed {
 mod tests {
     use super::*;
 
-    /// Marches along a function of one variable with slope at most 1; the hit, the samples it took.
-    fn run<M: Marcher>(m: M, f: impl Fn(f32) -> f32, end: f32) -> (Option<f32>, u32) {
+    const NEAR: f32 = 1e-3;
+
+    /// Marches along a function of one variable with slope at most 1; where the sign changed, the samples it took.
+    fn run<M: Marcher>(m: M, f: impl Fn(f32) -> f32, end: f32) -> (Option<[f32; 2]>, u32) {
         let mut at = Step {
             t: 0.0,
             z: 0.0,
             r: 0.0,
-            m: 0.0,
+            m: if M::CAREFUL { -1.0 } else { 0.0 },
+        };
+        let reach = Reach {
+            near: NEAR,
+            least: NEAR / 16.0,
+            behind: -1e-6,
         };
         for samples in 1..10_000 {
-            let next = m.advance(at, f(at.t + at.z), 1e-4, samples == 1);
+            let to = at.t + at.z.abs();
+            let next = advance(m, false, at, f(to), reach, samples == 1);
             if next.hit {
-                return (Some(next.step.t), samples);
+                return (Some([next.step.t, to]), samples);
             }
             at = next.step;
-            if at.t + at.r >= end {
+            if at.t + at.r.max(0.0) >= end {
                 return (None, samples);
             }
             at.z = at.z.min(end - at.t);
@@ -265,17 +283,24 @@ mod tests {
     /// A function along a ray and its first root.
     type Case = (fn(f32) -> f32, Option<f32>);
 
-    const CASES: [Case; 7] = [
+    const CASES: [Case; 11] = [
         // a wall met head-on, thick, thin, and thinner than a step
         (|t| 3.0 - t, Some(3.0)),
         (|t| (t - 3.0).abs() - 0.01, Some(2.99)),
         (|t| (2.0 - t).max(t - 2.05), Some(2.0)),
-        // a ball met at its edge and one that is passed by
+        // a wire of a tenth of a footprint
+        (|t| (t - 2.0).abs() - 0.000_1, Some(1.999_9)),
+        // a ball met at its edge and ones that are passed by: far, and by less than the footprint
         (|t| (t - 4.0).hypot(1.0) - 1.001, Some(3.955_267)),
         (|t| (t - 4.0).hypot(1.0) - 0.99, None),
+        (|t| (t - 4.0).hypot(1.0) - 0.999_9, None),
         // a floor that falls away before a wall
         (|t| (0.01 + t * 0.9).min((t - 6.0).abs() - 0.02), Some(5.98)),
         (|t| 0.3 + 0.2 * (4.0 * t).sin() * (t * 0.7).cos(), None),
+        // a skin without thickness before a wall
+        (|t| (t - 3.0).abs().min((t - 6.0).abs() - 0.02), Some(5.98)),
+        // a bound that is a hundredth of the distance: the root, and not where the value is small
+        (|t| (3.0 - t) * 0.01, Some(3.0)),
     ];
 
     fn check<M: Marcher>(m: M, name: &str) -> u32 {
@@ -284,8 +309,12 @@ mod tests {
             let (found, n) = run(m, f, 10.0);
             samples += n;
             match (found, root) {
-                (Some(t), Some(r)) => {
-                    assert!((t - r).abs() < 5e-3, "{name}, case {i}: {t} instead of {r}")
+                (Some([near, far]), Some(r)) => {
+                    assert!(
+                        near < r + 1e-5 && far > r - 1e-5 && f(far) < 0.0,
+                        "{name}, case {i}: {near} to {far} instead of {r}"
+                    );
+                    assert!(f(near) >= -1e-5, "{name}, case {i}: begins behind");
                 }
                 (None, None) => {}
                 (found, root) => panic!("{name}, case {i}: {found:?} instead of {root:?}"),
@@ -300,7 +329,7 @@ mod tests {
         check(Relaxed { omega: 1.2 }, "relaxed");
         check(Relaxed { omega: 1.9 }, "relaxed");
         check(Enhanced { share: 0.9 }, "enhanced");
-        check(Fixed { step: 0.005 }, "fixed");
+        check(Fixed { step: 0.000_15 }, "fixed");
         let auto = check(Auto { beta: 0.3 }, "auto");
         assert!(auto < sphere, "{auto} samples instead of {sphere}");
     }
@@ -309,21 +338,12 @@ mod tests {
     #[derive(Clone, Copy)]
     struct Careless;
     impl Marcher for Careless {
+        const CAREFUL: bool = false;
         fn begin<R: Rough>(self, r: R, _m: R) -> R {
             r
         }
-        fn advance<R: Rough>(self, at: Step<R>, f: R, threshold: R, _first: R::Mask) -> Advance<R> {
-            let step = Step {
-                t: at.t + at.z,
-                z: f.max(0.0) * 1.3 + threshold * 100.0,
-                r: f.max(0.0),
-                m: at.m,
-            };
-            Advance {
-                step,
-                kept: at.z.above(-1.0),
-                hit: f.below(threshold) & f.above(-threshold),
-            }
+        fn next<R: Rough>(self, r: R, _z: R, _before: R, m: R, _first: R::Mask) -> (R, R) {
+            (r.max(0.0) * 1.3 + 0.01, m)
         }
     }
 

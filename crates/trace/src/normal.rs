@@ -1,33 +1,47 @@
 //! What is known of a hit once its ray has ended: the exact place, the residual, the normal.
 
-use crate::simd::{along, load, load_words, load3, sided, splat3, store, store3};
+use crate::simd::{along, load, load_words, load3, sided, splat, splat3, store, store3};
 use crate::tile::{Hits, Scratch, Solid};
 use fearless_simd::{Simd, prelude::*};
 use zeroset_field::eval::{self, BATCH, Lane, Workspace};
 use zeroset_field::number::{Lanes, Ops, Real, Vec3, v3};
-use zeroset_scene::settings::Normals;
+use zeroset_scene::settings::{March, Normals};
 
 /// Least distance between the samples of a normal, as a share of the largest coordinate: with less, the rounding of single
 /// precision would show as noise.
 const LEAST_STEP: f32 = 1.0 / 16384.0;
 
-/// Puts hits where the footprint of their pixel meets the surface (Keinert 2014, 3.4, equations 2 and 3), finds the points,
-/// and the values there if they are wanted.
+/// Halvings of the part of a ray in which the sign changes, each by a guess that is nearly right.
+const ROUNDS: u32 = 2;
+/// As many where that part is a step of constant length.
+const FIXED_ROUNDS: u32 = 10;
+/// A guess leaves at least this share of the part on both sides of it.
+const MARGIN: f32 = 0.02;
+
+/// Finds the points where the sign changes, and the values there if they are wanted; then, `rounds` times, puts hits where the
+/// footprint of their pixel meets the surface (Keinert 2014, 3.4, equations 2 and 3).
 pub(crate) fn place<S: Simd>(
     s: S,
     solid: &Solid<'_>,
+    march: March,
     rounds: u32,
     residual: bool,
     q: &mut Scratch,
 ) {
+    let refinements = match march {
+        March::Fixed { .. } => FIXED_ROUNDS,
+        _ => ROUNDS,
+    };
     s.vectorize(
         #[inline(always)]
         || {
-            let threshold = solid.threshold();
             for k in (0..q.hits.count).step_by(BATCH) {
                 let n = (q.hits.count - k).min(BATCH);
+                if q.hits.beyond[k..k + n].iter().any(|z| *z > 0.0) {
+                    refine(s, solid, refinements, k, n, q);
+                }
                 for _ in 0..rounds {
-                    sample(
+                    values_at(
                         s,
                         solid,
                         n,
@@ -42,7 +56,7 @@ pub(crate) fn place<S: Simd>(
                             load(s, &q.work.values().0, i),
                             load_words(s, &q.hits.word, k + i),
                         );
-                        let wanted = threshold.at(t);
+                        let wanted = near(s, solid, &q.hits, k + i);
                         // a hit that was taken for want of steps may be far from the surface: it stays
                         let by = (f - wanted).clamp(-(wanted * 2.0), wanted * 2.0);
                         store((t + by).max(0.0), &mut q.hits.t, k + i);
@@ -51,15 +65,14 @@ pub(crate) fn place<S: Simd>(
                 for i in (0..n).step_by(S::f32s::LEN) {
                     let p = point_of(s, solid, &q.hits, k + i);
                     store3(p, &mut q.hits.point, k + i);
-                    let (t, f) = (load(s, &q.hits.t, k + i), load(s, &q.hits.f, k + i));
-                    store(
-                        f.abs().max(threshold.at(t)) * 2.0,
-                        &mut q.hits.offset,
-                        k + i,
-                    );
+                    // what is left of a value between places on both sides of the surface says nothing
+                    let between = load(s, &q.hits.beyond, k + i).above(0.0);
+                    let f = Lanes::select(between, splat(s, 0.0), load(s, &q.hits.f, k + i));
+                    let near = near(s, solid, &q.hits, k + i);
+                    store(f.abs().max(near) * 2.0, &mut q.hits.offset, k + i);
                 }
-                if residual && rounds > 0 {
-                    sample(
+                if residual {
+                    values_at(
                         s,
                         solid,
                         n,
@@ -69,15 +82,102 @@ pub(crate) fn place<S: Simd>(
                     );
                     q.counts.march += n as u64;
                     q.hits.residual[k..k + n].copy_from_slice(&q.work.values().0[..n]);
-                } else if residual {
-                    q.hits.residual[k..k + n].copy_from_slice(&q.hits.f[k..k + n]);
                 }
             }
         },
     );
 }
 
+/// The radius of the footprint at the hits from `i` on.
+#[inline(always)]
+fn near<S: Simd>(s: S, solid: &Solid<'_>, hits: &Hits, i: usize) -> Lanes<S> {
+    let narrow = solid.view.narrow(load3(s, &hits.ray, i));
+    solid.view.near(load(s, &hits.t, i), narrow)
+}
+
+/// Where a line through the values at both ends of the part of a ray is zero, from its beginning.
+#[inline(always)]
+fn zero<S: Simd>(s: S, hits: &Hits, i: usize) -> Lanes<S> {
+    let (f, behind) = (load(s, &hits.f, i).max(0.0), load(s, &hits.behind, i));
+    let share = f / (f - behind).max(1e-30);
+    load(s, &hits.beyond, i) * share.clamp(MARGIN, 1.0 - MARGIN)
+}
+
+/// Finds where the sign changes: false position, with the value at the end that stays halved each time (Illinois; Dowell and
+/// Jarratt 1971).
+#[inline(always)]
+fn refine<S: Simd>(
+    s: S,
+    solid: &Solid<'_>,
+    rounds: u32,
+    k: usize,
+    n: usize,
+    q: &mut Scratch,
+) {
+    for _ in 0..rounds {
+        let hits = &q.hits;
+        values_at(
+            s,
+            solid,
+            n,
+            &mut q.work,
+            #[inline(always)]
+            |i| {
+                let (o, d) = solid.view.split(load3(s, &hits.ray, k + i));
+                along(o, d, load(s, &hits.t, k + i) + zero(s, hits, k + i))
+            },
+        );
+        q.counts.march += n as u64;
+        for i in (0..n).step_by(S::f32s::LEN) {
+            let hits = &mut q.hits;
+            let value = sided(
+                load(s, &q.work.values().0, i),
+                load_words(s, &hits.word, k + i),
+            );
+            let by = zero(s, hits, k + i);
+            let (t, beyond) = (load(s, &hits.t, k + i), load(s, &hits.beyond, k + i));
+            let (f, behind) = (load(s, &hits.f, k + i), load(s, &hits.behind, k + i));
+            let (open, past) = (beyond.above(0.0), value.below(0.0));
+            store(
+                Lanes::select(open & !past, t + by, t),
+                &mut hits.t,
+                k + i,
+            );
+            let rest = Lanes::select(past, by, beyond - by);
+            store(Lanes::select(open, rest, beyond), &mut hits.beyond, k + i);
+            let front = Lanes::select(past, f * 0.5, value);
+            store(Lanes::select(open, front, f), &mut hits.f, k + i);
+            let back = Lanes::select(past, value, behind * 0.5);
+            store(Lanes::select(open, back, behind), &mut hits.behind, k + i);
+        }
+    }
+    for i in (0..n).step_by(S::f32s::LEN) {
+        let (t, beyond) = (load(s, &q.hits.t, k + i), load(s, &q.hits.beyond, k + i));
+        let by = zero(s, &q.hits, k + i);
+        store(
+            Lanes::select(beyond.above(0.0), t + by, t),
+            &mut q.hits.t,
+            k + i,
+        );
+    }
+}
+
 /// Evaluates the field at `n` points that are made by vectors.
+#[inline(always)]
+pub(crate) fn values_at<S: Simd>(
+    s: S,
+    solid: &Solid<'_>,
+    n: usize,
+    work: &mut Workspace,
+    point: impl Fn(usize) -> Vec3<Lanes<S>>,
+) {
+    fill(n, work, point);
+    eval::values(s, solid.program, work, n);
+}
+
+/// What is shown as the distance to the surface, at `n` points that are made by vectors: the value of the field where it is
+/// close to the distance, else the value over the length of the gradient (Taubin 1994), which no constant that the value was
+/// divided by changes.
 #[inline(always)]
 pub(crate) fn sample<S: Simd>(
     s: S,
@@ -87,7 +187,23 @@ pub(crate) fn sample<S: Simd>(
     point: impl Fn(usize) -> Vec3<Lanes<S>>,
 ) {
     fill(n, work, point);
-    eval::values(s, solid.program, work, n);
+    if solid.close {
+        eval::values(s, solid.program, work, n);
+    } else {
+        distances(s, solid, n, work);
+    }
+}
+
+/// The second kind of [`sample`], where the points are there already.
+#[inline(always)]
+pub(crate) fn distances<S: Simd>(s: S, solid: &Solid<'_>, n: usize, work: &mut Workspace) {
+    eval::gradients(s, solid.program, work, n);
+    for i in (0..n).step_by(S::f32s::LEN) {
+        let f = load(s, &work.gradient_values().0, i);
+        let slope = load3(s, work.gradients(), i).length();
+        let distance = f / slope.max(eval::FLAT);
+        store(distance, &mut work.values_mut().0, i);
+    }
 }
 
 #[inline(always)]
@@ -176,7 +292,7 @@ fn by_samples<S: Simd>(s: S, solid: &Solid<'_>, samples: &[[f32; 3]], q: &mut Sc
                 for &to in samples {
                     let length = (to[0] * to[0] + to[1] * to[1] + to[2] * to[2]).sqrt();
                     let hits = &q.hits;
-                    sample(
+                    values_at(
                         s,
                         solid,
                         n,
@@ -184,7 +300,8 @@ fn by_samples<S: Simd>(s: S, solid: &Solid<'_>, samples: &[[f32; 3]], q: &mut Sc
                         #[inline(always)]
                         |i| {
                             let p = load3(s, &hits.point, k + i);
-                            let h = step(p, solid.view.pixel.at(load(s, &hits.t, k + i)));
+                            let narrow = solid.view.narrow(load3(s, &hits.ray, k + i));
+                            let h = step(p, solid.view.width(load(s, &hits.t, k + i), narrow));
                             along(p, splat3(s, to), h)
                         },
                     );

@@ -1,14 +1,14 @@
 //! Primary rays: from the spans that the prepass found to the list of hits.
 
+use crate::isolate::{Crossing, Isolation, Line};
 use crate::march::{Arrived, ORDINAL, Sink, Source, Stream, stream};
-use crate::marcher::{Advance, Auto, Enhanced, Fixed, Marcher, Relaxed, Sphere, Step};
+use crate::marcher::{Auto, Enhanced, Fixed, Marcher, Relaxed, Sphere};
 use crate::order;
-use crate::simd::{Chosen, Row, Sheet, along, load, load_words, load3, sided, store, store3};
+use crate::simd::{Chosen, INSIDE, Sheet, load};
 use crate::tile::{Area, HEIGHT, Hits, Rays, Scratch, Solid, WIDTH};
 use fearless_simd::{Simd, prelude::*};
-use zeroset_field::eval::{self, BATCH};
 use zeroset_field::number::lanes::LaneMask;
-use zeroset_field::number::{Lanes, Ops, Real, Vec3};
+use zeroset_field::number::{Lanes, Ops, Vec3};
 use zeroset_scene::settings::March;
 use zeroset_scene::view::Linear;
 
@@ -16,7 +16,7 @@ use zeroset_scene::view::Linear;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Plan {
     pub(crate) march: March,
-    /// Whether rays that run out of steps take their best candidate.
+    /// Whether the rest of rays that run out of steps is searched.
     pub(crate) select: bool,
     /// Whether the steps of rays that hit nothing are wanted.
     pub(crate) steps: bool,
@@ -41,6 +41,12 @@ fn run<S: Simd, M: Marcher>(
     area: &Area,
     q: &mut Scratch,
 ) {
+    let view = solid.view;
+    let share = if solid.fractal {
+        FOOTPRINT / (solid.samples as f32).sqrt()
+    } else {
+        FOOTPRINT
+    };
     let how = Stream {
         solid,
         width: Linear {
@@ -48,7 +54,10 @@ fn run<S: Simd, M: Marcher>(
             constant: 0.0,
         },
         share: 1.0,
-        threshold: solid.threshold(),
+        near: view.footprint(share),
+        narrows: view.pinhole,
+        least: if solid.fractal { 0.5 } else { LEAST },
+        touch: solid.fractal,
         max_steps: solid.max_steps,
     };
     let pixels = Pixels {
@@ -60,7 +69,6 @@ fn run<S: Simd, M: Marcher>(
     q.exhausted.clear();
     let mut list = List {
         plan,
-        max_steps: solid.max_steps,
         hits: &mut q.hits,
         steps: &mut q.steps,
         exhausted: &mut q.exhausted,
@@ -78,9 +86,14 @@ fn run<S: Simd, M: Marcher>(
         &mut list,
     );
     if !q.exhausted.is_empty() {
-        select(s, marcher, solid, area, q);
+        search(plan, &how, area, q);
     }
 }
+
+/// Share of the footprint that counts as near.
+const FOOTPRINT: f32 = 1.0;
+/// Share of the footprint that a step is at least long. What is thinner may be passed.
+const LEAST: f32 = 1.0 / 16.0;
 
 /// The rays of a tile, one a pixel.
 struct Pixels<'a> {
@@ -110,10 +123,9 @@ impl<S: Simd> Source<S> for Pixels<'_> {
 /// What becomes of rays.
 struct List<'a> {
     plan: &'a Plan,
-    max_steps: u32,
     hits: &'a mut Hits,
     steps: &'a mut Sheet,
-    exhausted: &'a mut Vec<u32>,
+    exhausted: &'a mut Vec<(u32, f32)>,
 }
 
 impl<S: Simd> Sink<S> for List<'_> {
@@ -123,7 +135,9 @@ impl<S: Simd> Sink<S> for List<'_> {
         let n = hits.count;
         done.put3(at.ray, &mut hits.ray, n);
         done.put(at.t, &mut hits.t, n);
-        done.put(at.f, &mut hits.f, n);
+        done.put(at.beyond, &mut hits.beyond, n);
+        done.put(at.clearance, &mut hits.f, n);
+        done.put(at.behind, &mut hits.behind, n);
         done.put_words(at.word, &mut hits.word, n);
         done.put(Lanes(at.steps().to_float::<S::f32s>()), &mut hits.steps, n);
         hits.count += done.count;
@@ -142,107 +156,54 @@ impl<S: Simd> Sink<S> for List<'_> {
         }
     }
     fn spent(&mut self, rays: &Rays, i: usize) {
-        if self.plan.select {
-            self.exhausted.push(rays.word[i]);
-        } else {
-            // where it stands is taken for the surface
-            let ray = rays.ray.each_ref().map(|c| c[i]);
-            self.hits
-                .push(ray, rays.t[i], rays.r[i], rays.word[i], self.max_steps);
-        }
+        self.exhausted.push((rays.word[i], rays.t[i]));
     }
 }
 
+/// Looks for the surface on the rest of the rays that ran out of steps. Only what the search cannot tell, or fractals, are
+/// taken where they stand, and only if that is under a pixel (Keinert 2014, 3.2).
+fn search(plan: &Plan, how: &Stream<'_>, area: &Area, q: &mut Scratch) {
+    let (solid, exhausted) = (how.solid, std::mem::take(&mut q.exhausted));
+    let mut isolation = Isolation::new(solid.program);
+    for &(word, t) in &exhausted {
+        let k = (word & ORDINAL) as usize;
+        let x = order::X[k] + area.x as f32 + q.jitter[0][k];
+        let y = order::Y[k] + area.y as f32 + q.jitter[1][k];
+        let ray = solid.view.ray(x, y);
+        let (o, d) = solid.view.split(ray);
+        let line = Line {
+            origin: o.array(),
+            direction: d.array(),
+            inside: word & INSIDE != 0,
+        };
+        let near = solid.view.near(t, solid.view.narrow(ray));
+        let found = if plan.select && !solid.fractal {
+            isolation.first(&line, t, q.spans.end[k], near * LEAST)
+        } else {
+            Crossing::Unknown(t)
+        };
+        q.counts.march += isolation.take_evaluations();
+        let t = match found {
+            Crossing::None => continue,
+            Crossing::At(t) => t,
+            Crossing::Unknown(t) if isolation.distance(&line, t) < 2.0 * near => t,
+            Crossing::Unknown(_) => continue,
+        };
+        q.hits.push(ray.array(), t, word, solid.max_steps);
+    }
+    q.exhausted = exhausted;
+    q.exhausted.clear();
+}
+
 impl Hits {
-    fn push(&mut self, ray: [f32; 3], t: f32, f: f32, word: u32, steps: u32) {
+    fn push(&mut self, ray: [f32; 3], t: f32, word: u32, steps: u32) {
         let n = self.count;
         self.ray
             .iter_mut()
             .zip(ray)
             .for_each(|(column, x)| column[n] = x);
-        (self.t[n], self.f[n], self.word[n], self.steps[n]) = (t, f, word, steps as f32);
+        (self.t[n], self.word[n], self.steps[n]) = (t, word, steps as f32);
+        (self.beyond[n], self.f[n], self.behind[n]) = (0.0, 0.0, 0.0);
         self.count += 1;
     }
-}
-
-/// Marches the rays that ran out of steps once more, and takes of all their samples the one whose unbounding sphere is the
-/// smallest on the picture (Keinert 2014, 3.2). To keep track of it in every march would cost all rays.
-fn select<S: Simd, M: Marcher>(s: S, marcher: M, solid: &Solid<'_>, area: &Area, q: &mut Scratch) {
-    let exhausted = std::mem::take(&mut q.exhausted);
-    for words in exhausted.chunks(BATCH) {
-        let n = words.len();
-        let rays = &mut *q.rays;
-        let (mut error, mut place, mut value) = (Row::ZERO, Row::ZERO, Row::ZERO);
-        error.fill(f32::INFINITY);
-        for (i, &word) in words.iter().enumerate() {
-            let k = (word & ORDINAL) as usize;
-            let x = order::X[k] + area.x as f32 + q.jitter[0][k];
-            let y = order::Y[k] + area.y as f32 + q.jitter[1][k];
-            let ray = solid.view.ray(x, y);
-            rays.ray
-                .iter_mut()
-                .zip(ray.array())
-                .for_each(|(column, c)| column[i] = c);
-            (rays.t[i], rays.end[i], rays.m[i]) =
-                (q.spans.start[k], q.spans.end[k], q.spans.slope[k]);
-            (rays.r[i], rays.word[i]) = (q.spans.radius[k].abs(), word);
-            rays.z[i] = marcher
-                .begin(rays.r[i], rays.m[i])
-                .min(rays.end[i] - rays.t[i]);
-            place[i] = rays.t[i];
-        }
-        s.vectorize(
-            #[inline(always)]
-            || {
-                for number in 0..solid.max_steps {
-                    let points = q.work.points_mut();
-                    for i in (0..n).step_by(S::f32s::LEN) {
-                        let (o, d) = solid.view.split(load3(s, &rays.ray, i));
-                        store3(
-                            along(o, d, load(s, &rays.t, i) + load(s, &rays.z, i)),
-                            points,
-                            i,
-                        );
-                    }
-                    eval::values(s, solid.program, &mut q.work, n);
-                    q.counts.march += n as u64;
-                    let first = LaneMask(S::mask32s::splat(s, number == 0));
-                    for i in (0..n).step_by(S::f32s::LEN) {
-                        let f = sided(load(s, &q.work.values().0, i), load_words(s, &rays.word, i));
-                        let (t, z, end) = (
-                            load(s, &rays.t, i),
-                            load(s, &rays.z, i),
-                            load(s, &rays.end, i),
-                        );
-                        let threshold = solid.threshold().at(t + z);
-                        let at = Step {
-                            t,
-                            z,
-                            r: load(s, &rays.r, i),
-                            m: load(s, &rays.m, i),
-                        };
-                        let Advance { step, kept, .. } = marcher.advance(at, f, threshold, first);
-                        let (size, least) = (f.abs() / threshold, load(s, &error, i));
-                        let better = kept & size.below(least);
-                        store(Lanes::select(better, size, least), &mut error, i);
-                        store(
-                            Lanes::select(better, t + z, load(s, &place, i)),
-                            &mut place,
-                            i,
-                        );
-                        store(Lanes::select(better, f, load(s, &value, i)), &mut value, i);
-                        store(step.t, &mut rays.t, i);
-                        store(step.z.min(end - step.t), &mut rays.z, i);
-                        store(step.r, &mut rays.r, i);
-                        store(step.m, &mut rays.m, i);
-                    }
-                }
-            },
-        );
-        for (i, &word) in words.iter().enumerate() {
-            let ray = rays.ray.each_ref().map(|c| c[i]);
-            q.hits.push(ray, place[i], value[i], word, solid.max_steps);
-        }
-    }
-    q.exhausted = exhausted;
 }

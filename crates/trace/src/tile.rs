@@ -1,11 +1,12 @@
 //! The part of a picture that one thread works on at a time, and all the memory that this takes.
 
+use crate::march::ITERATIONS;
 use crate::planes::Planes;
 use crate::simd::{Row, SLACK, Sheet, TILE_RAYS, WordRow, WordSheet};
 use zeroset_field::eval::Workspace;
 use zeroset_field::program::Program;
 use zeroset_scene::render::Evaluations;
-use zeroset_scene::view::{Linear, Region, View};
+use zeroset_scene::view::{Region, View};
 
 /// Pixels of a tile from left to right.
 pub(crate) const WIDTH: usize = 64;
@@ -51,12 +52,32 @@ pub(crate) struct Solid<'a> {
     pub(crate) view: &'a View,
     /// Evaluations that a ray may take.
     pub(crate) max_steps: u32,
+    /// Whether the field is an estimate of something without an end to its detail: what is under the footprint is a hit.
+    pub(crate) fractal: bool,
+    /// Whether the field's value can be shown as a distance.
+    pub(crate) close: bool,
+    /// Rays a pixel: each stands for less of it.
+    pub(crate) samples: u32,
 }
 
-impl Solid<'_> {
-    /// A value of the field below this is a hit.
-    pub(crate) fn threshold(&self) -> Linear {
-        self.view.threshold
+impl<'a> Solid<'a> {
+    /// `max_steps` of a field whose value is the distance; one that is less gets more of them. `samples`: rays a pixel.
+    pub(crate) fn new(
+        program: &'a Program,
+        region: Region,
+        view: &'a View,
+        max_steps: u32,
+        samples: u32,
+    ) -> Solid<'a> {
+        Solid {
+            program,
+            region,
+            view,
+            max_steps: program.patient(max_steps).min(ITERATIONS),
+            fractal: program.is_fractal(),
+            close: program.is_close(),
+            samples,
+        }
     }
 }
 
@@ -85,6 +106,8 @@ pub(crate) struct Beams {
     pub(crate) m: Row,
     /// What is left of the light (soft shadows) or the value that counts as dark (hard ones).
     pub(crate) light: Row,
+    /// Steps are never shorter.
+    pub(crate) least: Row,
     pub(crate) end: Row,
     /// See [`crate::march`]; the hit's number in place of the pixel's.
     pub(crate) word: WordRow,
@@ -102,10 +125,14 @@ pub(crate) struct Ended {
 pub(crate) struct Hits {
     pub(crate) count: usize,
     pub(crate) ray: [Box<Sheet>; 3],
-    /// Distance along the ray.
+    /// Distance along the ray: the last place that is not behind the surface, then the surface.
     pub(crate) t: Box<Sheet>,
-    /// Value of the field when the march ended.
+    /// How much farther the ray is behind the surface; zero where it ended before.
+    pub(crate) beyond: Box<Sheet>,
+    /// Value of the field at `t`, from the side that was marched.
     pub(crate) f: Box<Sheet>,
+    /// The same behind the surface.
+    pub(crate) behind: Box<Sheet>,
     /// Pixel and side.
     pub(crate) word: Box<WordSheet>,
     /// Evaluations of the ray.
@@ -180,8 +207,8 @@ pub(crate) struct Scratch {
     pub(crate) hits: Hits,
     /// Evaluations of the rays that hit nothing, by pixel.
     pub(crate) steps: Box<Sheet>,
-    /// Words of the rays that ran out of steps.
-    pub(crate) exhausted: Vec<u32>,
+    /// Words of the rays that ran out of steps, and where they were.
+    pub(crate) exhausted: Vec<(u32, f32)>,
     /// Random numbers of the hits.
     pub(crate) scramble: [Vec<u32>; 2],
     pub(crate) planes: Planes,
@@ -219,6 +246,7 @@ impl Scratch {
                 r: row(),
                 m: row(),
                 light: row(),
+                least: row(),
                 end: row(),
                 word: *WordRow::boxed(),
                 count: 0,
@@ -232,7 +260,9 @@ impl Scratch {
                 count: 0,
                 ray: sheet3(),
                 t: Sheet::boxed(),
+                beyond: Sheet::boxed(),
                 f: Sheet::boxed(),
+                behind: Sheet::boxed(),
                 word: WordSheet::boxed(),
                 steps: Sheet::boxed(),
                 residual: Sheet::boxed(),

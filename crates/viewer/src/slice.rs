@@ -181,7 +181,7 @@ impl Compiled {
         farthest
     }
 
-    /// Values and gradients.
+    /// Distances as they are shown, and their gradients.
     fn evaluate(&mut self, points: &[Vec3]) -> (Vec<f32>, Vec<Vec3>) {
         let level = Level::new();
         let (mut values, mut slopes) = (Vec::new(), Vec::new());
@@ -194,9 +194,11 @@ impl Compiled {
             }
             let (program, workspace) = (&self.program, &mut self.workspace);
             dispatch!(level, s => gradients(s, program, workspace, n));
-            values.extend_from_slice(&self.workspace.gradient_values().0[..n]);
-            let [x, y, z] = self.workspace.gradients();
-            slopes.extend((0..n).map(|i| Vec3::new(x.0[i], y.0[i], z.0[i])));
+            for i in 0..n {
+                let (value, gradient) = self.workspace.shown_distance(&self.program, i);
+                values.push(value);
+                slopes.push(Vec3::from(gradient));
+            }
         }
         (values, slopes)
     }

@@ -43,7 +43,7 @@ impl Plane {
         point
     }
 
-    /// Samples a field on the plane. The caller has checked the size against its limits.
+    /// Samples the distance to the surface of a field on the plane, as it is shown. The caller has checked the size against its limits.
     pub fn sample(&self, program: &Program, size: [u32; 2]) -> Section {
         let [width, height] = size;
         let count = width as usize * height as usize;
@@ -64,10 +64,12 @@ impl Plane {
                 }
             }
             dispatch!(level, s => gradients(s, program, &mut workspace, n));
-            values.extend_from_slice(&workspace.gradient_values().0[..n]);
             let [(right, _), (up, _)] = self.directions();
-            let gradient = workspace.gradients();
-            slopes.extend((0..n).map(|i| gradient[right].0[i].hypot(gradient[up].0[i])));
+            for i in 0..n {
+                let (value, gradient) = workspace.shown_distance(program, i);
+                values.push(value);
+                slopes.push(gradient[right].hypot(gradient[up]));
+            }
         }
         Section {
             width,

@@ -15,7 +15,7 @@ use zeroset::scene::settings::{
 };
 use zeroset::shader::FieldForm;
 use zeroset::trace::CpuRenderer;
-use zeroset::trace::plain::{self, Compiled};
+use zeroset::trace::plain::{self, Compiled, Quality};
 
 const SIZE: [u32; 2] = [96, 72];
 
@@ -64,7 +64,7 @@ fn reference(scene: &Scene) -> Film {
     let renderer = CpuRenderer::new(None).unwrap();
     let picture = renderer.prepare(scene).expect("a program");
     let program = picture.program();
-    plain::render(scene, &program.bounds(), || Compiled::new(program, None))
+    plain::render(scene, &Quality::of(program, scene.settings.max_steps), || Compiled::new(program, None))
 }
 
 /// How much a plane changes where every ray stops a twentieth of a pixel earlier. Fractals, noise and far cities have detail

@@ -21,6 +21,9 @@ impl Lane {
     pub const ZERO: Lane = Lane([0.0; BATCH]);
 }
 
+/// Slopes below this are none.
+pub const FLAT: f32 = 1e-12;
+
 /// The registers of a program for one thread. Made once; an evaluation allocates nothing.
 pub struct Workspace {
     /// Value lanes; the first three are the points.
@@ -68,10 +71,30 @@ impl Workspace {
         &self.lanes[self.result]
     }
 
+    /// Where [`values`] leaves what it finds, for what is made of it.
+    #[inline(always)]
+    pub fn values_mut(&mut self) -> &mut Lane {
+        &mut self.lanes[self.result]
+    }
+
     /// The values that [`gradients`] found.
     #[inline(always)]
     pub fn gradient_values(&self) -> &Lane {
         &self.duals[self.result_dual]
+    }
+
+    /// What is shown as the distance to the surface at point number `i`, after [`gradients`], and its gradient: the value of the
+    /// field where it is close to the distance, else the value over the length of the gradient (Taubin 1994), which does not
+    /// depend on the constant that the value was divided by.
+    pub fn shown_distance(&self, program: &Program, i: usize) -> (f32, [f32; 3]) {
+        let value = self.gradient_values().0[i];
+        let gradient = self.gradients().each_ref().map(|lane| lane.0[i]);
+        if program.is_close() {
+            return (value, gradient);
+        }
+        let length = gradient.iter().map(|g| g * g).sum::<f32>().sqrt();
+        let scale = 1.0 / length.max(FLAT);
+        (value * scale, gradient.map(|g| g * scale))
     }
 
     /// What [`gradients`] found: the derivatives along x, y and z.

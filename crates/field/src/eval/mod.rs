@@ -5,6 +5,6 @@ mod level;
 mod marks;
 mod point;
 
-pub use batch::{BATCH, Lane, Workspace, gradients, values};
+pub use batch::{BATCH, FLAT, Lane, Workspace, gradients, values};
 pub use marks::{Marks, marks};
 pub use point::Point;

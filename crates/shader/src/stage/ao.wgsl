@@ -8,8 +8,8 @@ struct Openness {
 
 const UP: vec3f = vec3f(0.0, 1.0, 0.0);
 
-/// The field at a place, from the side of a surface.
+/// What is shown as the distance to the surface at a place.
 fn around(at: Surface, p: vec3f) -> f32 {
     counted[COUNT_OCCLUSION] += 1u;
-    return at.side * field(p);
+    return sensed(p).y;
 }

@@ -7,8 +7,10 @@
 
 /// A ray's first sample is this many offsets from its origin.
 const BEAM_FIRST: f32 = 2.0;
-/// A value of the field below this many offsets stops a ray that has no penumbra.
+/// A value of an estimate below this many offsets stops a ray that has no penumbra; any other field must change its sign.
 const BEAM_STOP: f32 = 0.125;
+/// Steps are at least this many offsets long.
+const BEAM_LEAST: f32 = 0.03125;
 /// Less light than this counts as dark.
 const BEAM_DARK: f32 = 1.0 / 256.0;
 /// Smoothing of the slope along a ray.
@@ -33,6 +35,11 @@ fn look(at: Surface, to: vec3f, distance: f32, kind: u32, sharpness: f32) -> Bea
     let origin = at.point + at.normal * at.offset;
     let hard = kind == 1u;
     let width = select(1.0 / max(sharpness, 1e-20), 0.0, hard);
+    // beside a loose bound penumbrae are seen where samples happen to be
+    let close = is_close();
+    let careful = select(0.0, width, close);
+    let least = at.offset * BEAM_LEAST;
+    let stop = select(2.0 * behind_surface(at.point), at.offset * BEAM_STOP, is_fractal());
     let end = min(min(leave(Ray(origin, to), width, at.offset), distance), frame.far);
     var t = min(at.offset * BEAM_FIRST, end);
     var z = 0.0;
@@ -42,34 +49,35 @@ fn look(at: Surface, to: vec3f, distance: f32, kind: u32, sharpness: f32) -> Bea
     var steps = 0u;
     while (steps < frame.max_steps) {
         let there = t + z;
-        let f = at.side * field(origin + to * there);
+        let found = sensed(origin + to * there);
+        let f = found.x;
         steps += 1u;
-        let wide = light * width;
-        if (z > r && 0.5 * (r + f - z) < wide * there) {
+        let wide = light * careful;
+        if (z > r && z > least && 0.5 * (r + f - z) < wide * there) {
             // something between the samples can matter: back to the radius itself, which is sure to be kept
             m = -1.0;
-            z = r;
+            z = max(r, least);
         } else {
             if (z > 0.0) {
                 m = mix(m, clamp((f - r) / max(z, 1e-20), -1.0, 1.0), BEAM_SMOOTHING);
             }
             m = min(m, BEAM_STEEPEST);
             if (hard) {
-                if (f < at.offset * BEAM_STOP) {
+                if (f < stop) {
                     return Beam(0.0, there, steps);
                 }
             } else {
-                light = min(light, penumbra(f, z, r, there, kind) * sharpness);
+                light = min(light, penumbra(found.y, select(0.0, z, close), r, there, kind) * sharpness);
                 if (light < BEAM_DARK) {
                     return Beam(0.0, there, steps);
                 }
             }
             t = there;
             r = f;
-            let narrow = light * width;
-            z = max(r, (r - narrow * t) * 2.0 * BEAM_SHARE / (1.0 - m + 2.0 * narrow));
+            let narrow = light * careful;
+            z = max(max(r, least), (r - narrow * t) * 2.0 * BEAM_SHARE / (1.0 - m + 2.0 * narrow));
         }
-        if (!(t + r < end)) {
+        if (!(t + max(r, 0.0) < end)) {
             break;
         }
         z = min(z, end - t);

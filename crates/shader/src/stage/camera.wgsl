@@ -5,6 +5,8 @@ struct Ray {
     direction: vec3f,
 }
 
+/// Evaluations in single precision are off by about this share of the largest coordinate.
+const ROUNDING: f32 = 4.7683716e-7;
 /// A number that no distance of a scene reaches.
 const FAR: f32 = 3.0e38;
 
@@ -62,12 +64,46 @@ fn wants_detail() -> bool {
     return frame.planes_c.z != 0u;
 }
 
-/// Full width of a pixel at distance `t`.
-fn pixel_width(t: f32) -> f32 {
-    return frame.pixel.x * t + frame.pixel.y;
+/// How much narrower the footprint of a pixel is along a ray than in the middle of the picture, for the same distance.
+fn narrowness(ray: Ray) -> f32 {
+    if (frame.pinhole == 0u) {
+        return 1.0;
+    }
+    let cosine = dot(ray.direction, frame.back);
+    return cosine * cosine;
 }
 
-/// A value of the field below this is a hit at distance `t`.
-fn threshold(t: f32) -> f32 {
-    return frame.threshold.x * t + frame.threshold.y;
+/// The width of a pixel at distance `t`: the side of a square of its area.
+fn pixel_width(ray: Ray, t: f32) -> f32 {
+    let narrow = narrowness(ray);
+    return frame.pixel.x * t * sqrt(narrow * sqrt(narrow)) + frame.pixel.y;
+}
+
+/// The radius of the footprint at distance `t`.
+fn footprint(ray: Ray, t: f32) -> f32 {
+    return frame.footprint * (frame.pixel.x * t * narrowness(ray) + frame.pixel.y) + frame.rounding.x * t + frame.rounding.y;
+}
+
+/// Share of the footprint that a step is at least long.
+const LEAST_SHARE: f32 = 0.0625;
+
+/// A value at `p` that is below this is behind the surface; one closer to zero may have its sign from rounding.
+fn behind_surface(p: vec3f) -> f32 {
+    return -0.5 * ROUNDING * (abs(p.x) + abs(p.y) + abs(p.z));
+}
+
+/// Where the line from the value `r` at `t` to that at `inside` (place and value) is zero.
+fn sign_change(t: f32, r: f32, inside: vec2f) -> f32 {
+    let share = clamp(r / max(r - inside.y, 1e-30), 0.02, 0.98);
+    return t + (inside.x - t) * share;
+}
+
+/// Whether the field is an estimate of something without an end to its detail.
+fn is_fractal() -> bool {
+    return (frame.quality & 1u) != 0u;
+}
+
+/// Whether the field's value can be shown as a distance.
+fn is_close() -> bool {
+    return (frame.quality & 2u) != 0u;
 }

@@ -1,55 +1,105 @@
 // Primary rays. Every marcher evaluates the field in one place only: a driver copies the whole field there.
+//
+// A ray ends where the field changes its sign. Near the surface it guesses where that is, from the slope between its last
+// two samples. Below the least step nothing is proven any more: a body thinner than that may be passed.
 
 /// Where a ray ended.
 struct Found {
     hit: bool,
     t: f32,
-    /// Value of the field, from the side that was marched.
+    /// Value of the field where it was found under the footprint, from the side that was marched; 0 where it changed its sign.
     f: f32,
     /// 1, or -1 where the ray began inside the solid.
     side: f32,
     steps: u32,
 }
 
+/// A guess goes this much farther than where the sign should change, so that it does.
+const GUESS_BEYOND: f32 = 1.1;
+/// Guesses are at most this many footprints long.
+const GUESS_LONGEST: f32 = 64.0;
+/// Guesses of where the sign changes, between places where it has.
+const REFINEMENTS: u32 = 2u;
+
 /// Marches a ray from `start` to `end`. `slope` is the field's slope along it, as far as it is known.
 fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
+    let fractal = is_fractal();
+    let narrow = narrowness(ray);
+    let foot = select(frame.footprint, frame.footprint / sqrt(f32(max(frame.samples, 1u))), fractal);
+    let share = select(LEAST_SHARE, 0.5, fractal);
     var t = start;
     var z = 0.0;
     var r = 0.0;
     var side = 1.0;
+    var guess = false;
+    var falling = false;
+    var limit = 0.0;
     var progress = begin_steps(slope);
-    // the candidate whose unbounding sphere is the smallest on the picture (Keinert 2014, 3.2): size, place, value
-    var best = vec3f(FAR, start, 0.0);
+    // how often the place of the change of sign is still guessed, the place behind it and the value there
+    var left = 0u;
+    var inside = vec2f(0.0);
     for (var steps = 1u; steps <= frame.max_steps; steps++) {
-        var next = side * field(ray.origin + ray.direction * (t + z));
+        let to = t + z;
+        let p = ray.origin + ray.direction * to;
+        var next = side * field(p);
+        if (left > 0u) {
+            if (next < 0.0) {
+                inside = vec2f(to, next);
+                r *= 0.5;
+            } else {
+                t = to;
+                r = next;
+                inside.y *= 0.5;
+            }
+            z = sign_change(t, r, inside) - t;
+            left -= 1u;
+            if (left == 0u) {
+                return Found(true, t + z, 0.0, side, steps);
+            }
+            continue;
+        }
+        let rounding = frame.rounding.x * to + frame.rounding.y;
+        let radius = foot * (frame.pixel.x * to * narrow + frame.pixel.y);
+        let least = radius * share + rounding;
+        limit = radius + rounding;
+        guess = guess && steps > 1u;
+        var root = 0.0;
         if (steps == 1u) {
             side = select(1.0, -1.0, next < 0.0);
             next *= side;
-        } else if (z > r && z > r + next) {
-            // a gap between the spheres: back to the sphere itself
-            progress = failed(progress);
-            z = min(r, end - t);
-            continue;
         } else {
+            let gap = z > r && z > r + next && z > least;
+            if (next < behind_surface(p) && (!gap || guess)) {
+                r = max(r, 0.0);
+                inside = vec2f(to, next);
+                z = sign_change(t, r, inside) - t;
+                left = REFINEMENTS;
+                continue;
+            }
+            if (gap) {
+                // a gap between the spheres: back to the sphere itself
+                progress = failed(progress);
+                z = min(max(r, least), end - t);
+                guess = false;
+                continue;
+            }
             progress = passed(progress, z, r, next);
+            falling = r > next;
+            root = next * z / max(r - next, 1e-30) * GUESS_BEYOND + least;
         }
-        t += z;
+        t = to;
         r = next;
-        let limit = threshold(t);
-        let size = abs(r) / limit;
-        if (size < best.x) {
-            best = vec3f(size, t, r);
-        }
-        if (r < limit) {
+        if (fractal && r < limit) {
             return Found(true, t, r, side, steps);
         }
-        if (t + r >= end) {
+        if (t + max(r, 0.0) >= end) {
             return Found(false, t, r, side, steps);
         }
-        z = min(next_step(progress, r), end - t);
+        z = max(next_step(progress, r), least);
+        guess = !fractal && steps > 1u && falling && r < limit && root > z && root < GUESS_LONGEST * limit;
+        z = min(select(z, root, guess), end - t);
     }
-    if (frame.hit_selection != 0u) {
-        return Found(true, best.y, best.z, side, frame.max_steps);
-    }
-    return Found(true, t, r, side, frame.max_steps);
+    // out of steps: a surface only where the ray is within a pixel of it, and comes nearer
+    let close = fractal || (is_close() && falling && frame.hit_selection != 0u);
+    return Found(close && r < 2.0 * limit, t, r, side, frame.max_steps);
 }

@@ -40,26 +40,30 @@ fn trace_ray(pixel: vec2u, index: u32, ray: Ray, span: vec3f) -> Sample {
     var residual = found.f;
     // where the footprint of the pixel meets the surface (Keinert 2014, 3.4, equations 2 and 3); a turn more finds what is left
     // there
-    let turns = select(0u, frame.placing + select(0u, 1u, wants_detail()), frame.placing > 0u);
+    let turns = frame.placing + select(0u, 1u, wants_detail());
     for (var k = 0u; k < turns; k++) {
         residual = found.side * field(ray.origin + ray.direction * t);
         counted[COUNT_MARCH] += 1u;
         if (k < frame.placing) {
-            let wanted = threshold(t);
+            let wanted = footprint(ray, t);
             t = max(t + clamp(residual - wanted, -2.0 * wanted, 2.0 * wanted), 0.0);
         }
     }
     let point = ray.origin + ray.direction * t;
-    let pixel_here = pixel_width(t);
+    let pixel_here = pixel_width(ray, t);
     let uphill = gradient(point, pixel_here) * found.side;
     let steepness = length(uphill);
     let normal = select(-ray.direction, uphill / steepness, steepness > 0.0 && steepness < FAR);
-    let at = Surface(point, normal, found.side, 2.0 * max(abs(found.f), threshold(t)), ray.direction);
+    let at = Surface(point, normal, found.side, 2.0 * max(abs(found.f), footprint(ray, t)), ray.direction);
     let marks = field_marks(point);
     counted[COUNT_MATERIAL] += 1u;
     let key = scramble(pixel, frame.seed ^ ((index + 1u) * 0x9e3779b9u));
     let object = select(frame.objects, u32(max(marks.object, 0.0)), marks.object >= 0.0 && marks.object < f32(frame.objects));
-    let seen = occlusion(at, load_occluder(frame.object_rows + object * OCCLUDER_ROWS), key);
+    // inside a solid there is no sky: it is shown as if there were no solid
+    var seen = Openness(1.0, normal);
+    if (found.side > 0.0) {
+        seen = occlusion(at, load_occluder(frame.object_rows + object * OCCLUDER_ROWS), key);
+    }
     let width = pixel_here / sqrt(f32(max(frame.samples, 1u)));
     let place = place_on(point, normal, ray.direction, width, marks.orbit);
     var what = substance_of(marks.first, place);

@@ -2,12 +2,13 @@
 
 use super::{Plain, Probe, field, glam};
 use crate::ao::{CONE_COSINES, CONE_RATIO, CONE_TANGENT, EVANS, UP, cone_directions, turn};
-use crate::beam::{FIRST, STOP};
+use crate::beam::{FIRST, LEAST, STOP};
 use crate::sampling::{cosine_direction, point};
 use crate::shade::arrival;
 use crate::shadow::{DARK, closest};
 use glam::Vec3;
 use zeroset_scene::settings::{Occlusion, Shadow};
+use zeroset_scene::view::ROUNDING;
 
 /// A place on a surface that light falls on.
 pub(super) struct Surface {
@@ -38,6 +39,7 @@ impl Plain<'_> {
             let (to, distance) = Self::towards(&light.source, origin);
             let lit = match light.shadow {
                 _ if at.normal.dot(to) <= 0.0 => 0.0,
+                _ if at.side < 0.0 => 1.0,
                 Shadow::None => 1.0,
                 Shadow::Hard => self.hard(probe, at, to, distance, |_| 0.0),
                 Shadow::Soft { sharpness } => self.soft(probe, at, to, distance, sharpness, false),
@@ -79,16 +81,21 @@ impl Plain<'_> {
             .leave(origin, to, 0.0, at.offset)
             .min(distance)
             .min(self.view.far);
+        let stop = if self.quality.fractal {
+            at.offset * STOP
+        } else {
+            -ROUNDING * (at.p.x.abs() + at.p.y.abs() + at.p.z.abs())
+        };
         let mut t = at.offset * FIRST;
-        for _ in 0..self.settings.max_steps {
+        for _ in 0..self.quality.max_steps {
             if t >= end {
                 break;
             }
-            let f = at.side * probe.value(origin + to * t);
-            if f < at.offset * STOP {
+            let f = probe.value(origin + to * t);
+            if f < stop {
                 return stopped(t);
             }
-            t += f;
+            t += f.max(at.offset * LEAST);
         }
         1.0
     }
@@ -110,21 +117,21 @@ impl Plain<'_> {
             .min(self.view.far);
         let (mut t, mut light) = (at.offset * FIRST, 1.0f32);
         let mut last: Option<f32> = None;
-        for _ in 0..self.settings.max_steps {
+        for _ in 0..self.quality.max_steps {
             if t >= end {
                 break;
             }
-            let f = at.side * probe.value(origin + to * t);
+            let f = probe.value(origin + to * t);
             let (y, d) = match last {
-                Some(r) if aaltonen && f >= 0.0 => closest(f, r, r),
-                _ => (0.0, f),
+                Some(r) if aaltonen && self.quality.close && f >= 0.0 => closest(f, r, r),
+                _ => (0.0, self.distance(probe, origin + to * t)),
             };
             light = light.min(sharpness * d / (t - y).max(1e-20));
             if light < DARK {
                 return 0.0;
             }
             last = Some(f);
-            t += f;
+            t += f.max(at.offset * LEAST);
         }
         light
     }
@@ -143,7 +150,7 @@ impl Plain<'_> {
             .get(object.max(0.0) as usize)
             .and_then(|o| o.occlusion);
         let up = Vec3::from(UP);
-        let mut f = |p: Vec3| at.side * probe.value(p);
+        let mut f = |p: Vec3| self.distance(probe, p);
         let open = match chosen.unwrap_or(self.settings.occlusion) {
             Occlusion::None => 1.0,
             Occlusion::Quilez { steps, step, scale } => {

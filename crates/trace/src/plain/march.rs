@@ -4,6 +4,7 @@ use super::{Plain, Probe, field, glam};
 use crate::normal::{CENTRAL, NEIGHBOURS_18, NEIGHBOURS_26, TETRAHEDRON, step};
 use glam::Vec3;
 use zeroset_scene::settings::{March, Normals};
+use zeroset_scene::view::ROUNDING;
 
 /// Where a ray ended.
 pub(super) struct Found {
@@ -15,11 +16,15 @@ pub(super) struct Found {
 #[derive(Clone, Copy)]
 pub(super) struct Ending {
     pub(super) t: f32,
-    /// Value of the field, from the side that was marched.
+    /// Value of the field where it was found under the footprint, from the side that was marched; zero where it changed its
+    /// sign.
     pub(super) f: f32,
     /// 1, or -1 where the ray began inside the solid.
     pub(super) side: f32,
 }
+
+/// How much farther than its steps a ray is followed before it counts as one that hits nothing.
+const PATIENCE: u32 = 40;
 
 impl Plain<'_> {
     /// Marches a ray from where it enters the scene's box.
@@ -40,41 +45,77 @@ impl Plain<'_> {
                 steps: 0,
             };
         }
-        let mut steps = 0;
-        let mut at = |t: f32| {
-            steps += 1;
-            probe.value(o + d * t)
-        };
-        let first = at(start);
+        let mut steps = 1;
+        let first = probe.value(o + d * start);
         let side = if first < 0.0 { -1.0 } else { 1.0 };
-        let threshold = |t: f32| wide.at(t);
-        let mut ray = Ray {
-            t: start,
-            r: side * first,
-            end,
-            left: self.settings.max_steps.max(1) - 1,
-            best: None,
+        let narrow = self.narrow(o, d);
+        let fractal = self.quality.fractal;
+        let footprint = if fractal {
+            1.0 / (self.samples() as f32).sqrt()
+        } else {
+            1.0
         };
-        let mut f = |t: f32| side * at(t);
-        let found = match self.settings.march {
-            March::Fixed { step } => ray.fixed(&mut f, step, threshold),
-            March::Sphere => ray.relaxed(&mut f, 1.0, threshold),
-            March::Relaxed { omega } => ray.relaxed(&mut f, omega, threshold),
-            March::Enhanced { share } => ray.enhanced(&mut f, share, threshold),
-            March::Auto { beta } => ray.auto(&mut f, beta, threshold),
+        let share = if fractal { 0.5 } else { 1.0 / 16.0 };
+        let rounding = |t: f32| self.view.rounding.at(t);
+        let near = |t: f32| (self.view.near(t, narrow) - rounding(t)) * footprint + rounding(t);
+        let least = |t: f32| (near(t) - rounding(t)) * share + rounding(t);
+        let behind = |t: f32| {
+            let p = (o + d * t).abs();
+            -0.5 * ROUNDING * (p.x + p.y + p.z)
         };
-        let hit = match found {
-            Way::Hit(t, f) => Some(Ending { t, f, side }),
-            Way::Left => None,
-            // Keinert 2014, 3.2: the candidate with the smallest sphere on the picture, or else the last place
-            Way::Spent if self.settings.hit_selection => {
-                ray.best.map(|(_, t, f)| Ending { t, f, side })
+        let mut f = |t: f32| side * probe.value(o + d * t);
+        let mut steady = Steady::new(self.settings.march);
+        let patience = if self.settings.hit_selection { PATIENCE } else { 1 };
+        let limit = self.quality.max_steps.saturating_mul(patience);
+        let (mut t, mut r) = (start, side * first);
+        // the step, and whether it is a guess of where the sign changes
+        let (mut z, mut guess) = (steady.step(r), false);
+        let (mut found, mut lost) = (None, false);
+        let mut arrived = fractal && r < near(t);
+        while !arrived && t + r.max(0.0) < end {
+            if steps >= limit {
+                lost = true;
+                break;
             }
-            Way::Spent => Some(Ending {
-                t: ray.t,
-                f: ray.r,
-                side,
-            }),
+            z = z.max(if steady.careful() { least(t) } else { 0.0 }).min(end - t);
+            let next = f(t + z);
+            steps += 1;
+            let crossed = next < behind(t + z);
+            let gap = steady.careful() && z > r && z > r + next && z > least(t + z);
+            if crossed && (!gap || guess) {
+                found = Some([t, r.max(0.0), t + z, next]);
+                break;
+            }
+            if gap {
+                steady.fail();
+                (z, guess) = (r, false);
+                continue;
+            }
+            steady.pass(z, r, next);
+            let fall = r - next;
+            let root = next * z / fall.max(1e-30) * 1.1 + least(t + z);
+            (t, r) = (t + z, next);
+            z = steady.step(r);
+            guess = steady.careful()
+                && !fractal
+                && r < near(t)
+                && fall > 0.0
+                && root > z.max(least(t))
+                && root < 64.0 * near(t);
+            if guess {
+                z = root;
+            }
+            arrived = fractal && r < near(t);
+        }
+        let found = found.map(|part| bisect(&mut f, part));
+        if lost {
+            // nobody knows: a surface only where the ray is within a pixel of it
+            let slope = probe.gradient(o + d * t).length().max(1e-30);
+            arrived = r / slope < 2.0 * near(t);
+        }
+        let hit = match found {
+            Some(t) => Some(Ending { t, f: 0.0, side }),
+            None => arrived.then_some(Ending { t, f: r, side }),
         };
         Found { hit, steps }
     }
@@ -88,7 +129,7 @@ impl Plain<'_> {
         t: f32,
         side: f32,
     ) -> Vec3 {
-        let h = step(field(p), self.view.pixel.at(t));
+        let h = step(field(p), self.view.width(t, self.narrow(p, d)));
         let mut sum = |samples: &[[f32; 3]]| {
             let part = |to: &[f32; 3]| {
                 let to = Vec3::from(*to);
@@ -118,179 +159,76 @@ impl Plain<'_> {
     }
 }
 
-/// How a march came out.
-enum Way {
-    Hit(f32, f32),
-    Left,
-    Spent,
-}
-
-/// A ray on its way: the last good place, the radius there, and how far it may still go.
-struct Ray {
-    t: f32,
-    r: f32,
-    end: f32,
-    left: u32,
-    /// The best candidate so far: its size, its place, its value.
-    best: Option<(f32, f32, f32)>,
-}
-
-impl Ray {
-    /// Whether the radius at the last place ends the march.
-    fn settled(&mut self, threshold: impl Fn(f32) -> f32) -> Option<Way> {
-        let limit = threshold(self.t);
-        let size = self.r.abs() / limit;
-        if self.best.is_none_or(|(best, ..)| size < best) {
-            self.best = Some((size, self.t, self.r));
-        }
-        if self.r < limit {
-            Some(Way::Hit(self.t, self.r))
-        } else if self.t + self.r >= self.end {
-            Some(Way::Left)
+/// The place between two samples where the sign changes.
+fn bisect(f: &mut impl FnMut(f32) -> f32, [mut outside, _, mut inside, _]: [f32; 4]) -> f32 {
+    for _ in 0..40 {
+        let middle = 0.5 * (outside + inside);
+        if f(middle) < 0.0 {
+            inside = middle;
         } else {
-            None
+            outside = middle;
+        }
+    }
+    0.5 * (outside + inside)
+}
+
+/// What a marcher remembers of the steps before.
+struct Steady {
+    march: March,
+    /// Omega, or the smoothed slope.
+    number: f32,
+    /// The last step and the radius that it began with.
+    last: Option<(f32, f32)>,
+}
+
+impl Steady {
+    fn new(march: March) -> Steady {
+        let number = match march {
+            March::Relaxed { omega } => omega,
+            _ => -1.0,
+        };
+        Steady {
+            march,
+            number,
+            last: None,
         }
     }
 
-    /// One more sample, if any are left.
-    fn sample(&mut self, f: &mut impl FnMut(f32) -> f32, z: f32) -> Option<f32> {
-        self.left = self.left.checked_sub(1)?;
-        Some(f(self.t + z))
+    /// Whether samples between which there may be a surface are taken back.
+    fn careful(&self) -> bool {
+        !matches!(self.march, March::Fixed { .. })
     }
 
-    /// Sphere tracing, over-relaxed until the first gap (Keinert 2014, listing 2 corrected). With `omega` 1 there are none.
-    fn relaxed(
-        &mut self,
-        f: &mut impl FnMut(f32) -> f32,
-        mut omega: f32,
-        threshold: impl Fn(f32) -> f32 + Copy,
-    ) -> Way {
-        loop {
-            if let Some(way) = self.settled(threshold) {
-                return way;
-            }
-            let mut z = (self.r * omega).min(self.end - self.t);
-            let Some(mut next) = self.sample(f, z) else {
-                return Way::Spent;
-            };
-            if z > self.r && z > self.r + next {
-                omega = 1.0;
-                z = self.r.min(self.end - self.t);
-                match self.sample(f, z) {
-                    Some(again) => next = again,
-                    None => return Way::Spent,
-                }
-            }
-            (self.t, self.r) = (self.t + z, next);
+    /// A sample was taken back.
+    fn fail(&mut self) {
+        match self.march {
+            March::Relaxed { .. } => self.number = 1.0,
+            _ => self.number = -1.0,
         }
     }
 
-    /// The planar guess (Balint and Valasek 2018).
-    fn enhanced(
-        &mut self,
-        f: &mut impl FnMut(f32) -> f32,
-        share: f32,
-        threshold: impl Fn(f32) -> f32 + Copy,
-    ) -> Way {
-        let mut last: Option<(f32, f32)> = None;
-        loop {
-            if let Some(way) = self.settled(threshold) {
-                return way;
-            }
-            let guess = last.map_or(self.r, |(d, r0)| {
-                let behind = (d + r0 - self.r).max(0.02 * d).max(1e-20);
-                self.r + share * self.r * ((d - r0 + self.r) / behind).max(0.0)
-            });
-            let mut z = guess.min(self.end - self.t);
-            let Some(mut next) = self.sample(f, z) else {
-                return Way::Spent;
-            };
-            if z > self.r && z > self.r + next {
-                z = self.r.min(self.end - self.t);
-                match self.sample(f, z) {
-                    Some(again) => next = again,
-                    None => return Way::Spent,
-                }
-            }
-            last = Some((z, self.r));
-            (self.t, self.r) = (self.t + z, next);
+    /// A sample was kept.
+    fn pass(&mut self, z: f32, before: f32, r: f32) {
+        if let March::Auto { beta } = self.march {
+            let slope = ((r - before) / z.max(1e-20)).clamp(-1.0, 1.0);
+            self.number = (self.number + (slope - self.number) * beta).min(0.98);
         }
+        self.last = Some((z, before));
     }
 
-    /// The smoothed slope (Ban and Valasek 2023).
-    fn auto(
-        &mut self,
-        f: &mut impl FnMut(f32) -> f32,
-        beta: f32,
-        threshold: impl Fn(f32) -> f32 + Copy,
-    ) -> Way {
-        let mut m = -1.0f32;
-        loop {
-            if let Some(way) = self.settled(threshold) {
-                return way;
-            }
-            let z = (self.r * (2.0 / (1.0 - m)).max(1.0)).min(self.end - self.t);
-            let Some(next) = self.sample(f, z) else {
-                return Way::Spent;
-            };
-            if z > self.r && z > self.r + next {
-                m = -1.0;
-                continue;
-            }
-            let slope = ((next - self.r) / z).clamp(-1.0, 1.0);
-            m = (m + (slope - m) * beta).min(0.98);
-            (self.t, self.r) = (self.t + z, next);
+    /// The next step from a place with this radius.
+    fn step(&self, r: f32) -> f32 {
+        match self.march {
+            March::Fixed { step } => step,
+            March::Sphere => r,
+            March::Relaxed { .. } => r * self.number,
+            // the planar guess (Balint and Valasek 2018)
+            March::Enhanced { share } => self.last.map_or(r, |(d, r0)| {
+                let behind = (d + r0 - r).max(0.02 * d).max(1e-20);
+                r + share * r * ((d - r0 + r) / behind).max(0.0)
+            }),
+            // the smoothed slope (Ban and Valasek 2023)
+            March::Auto { .. } => r * (2.0 / (1.0 - self.number)).max(1.0),
         }
-    }
-
-    /// Constant steps, then bisection (Tomczak 2012, algorithm 2.1; Munini 2021, 3.2).
-    fn fixed(
-        &mut self,
-        f: &mut impl FnMut(f32) -> f32,
-        step: f32,
-        threshold: impl Fn(f32) -> f32 + Copy,
-    ) -> Way {
-        loop {
-            let limit = threshold(self.t);
-            let size = self.r.abs() / limit;
-            if self.best.is_none_or(|(best, ..)| size < best) {
-                self.best = Some((size, self.t, self.r));
-            }
-            if self.t >= self.end {
-                return Way::Left;
-            }
-            let z = step.min(self.end - self.t);
-            let Some(next) = self.sample(f, z) else {
-                return Way::Spent;
-            };
-            if next < 0.0 {
-                return self.bisect(f, z, threshold);
-            }
-            (self.t, self.r) = (self.t + z, next);
-        }
-    }
-
-    /// Halves the last step, in which the sign changed.
-    fn bisect(
-        &mut self,
-        f: &mut impl FnMut(f32) -> f32,
-        z: f32,
-        threshold: impl Fn(f32) -> f32,
-    ) -> Way {
-        let (mut outside, mut inside) = (self.t, self.t + z);
-        let mut value = self.r;
-        while 0.5 * (inside - outside) >= 0.5 * threshold(inside) {
-            self.t = 0.5 * (outside + inside);
-            let Some(next) = self.sample(f, 0.0) else {
-                return Way::Spent;
-            };
-            value = next;
-            if next < 0.0 {
-                inside = self.t;
-            } else {
-                outside = self.t;
-            }
-        }
-        Way::Hit(self.t, value)
     }
 }

@@ -19,6 +19,7 @@ use light::Surface;
 use rayon::prelude::*;
 use zeroset_field::bounds::Aabb;
 use zeroset_field::number::v3;
+use zeroset_field::program::Program;
 use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::material::Material;
 use zeroset_scene::scene::Scene;
@@ -53,22 +54,54 @@ struct Hit {
     object: f32,
 }
 
-/// Renders a scene on the threads of the pool that it is called in. `bounds` is a box that holds the solid; `probe` makes an
-/// evaluator of the field.
-pub fn render<P: Probe>(scene: &Scene, bounds: &Aabb, probe: impl Fn() -> P + Sync) -> Film {
+/// What is known of a field apart from its values.
+#[derive(Clone, Copy, Debug)]
+pub struct Quality {
+    /// A box that holds the solid.
+    pub bounds: Aabb,
+    /// Whether what is under the footprint of a pixel is a hit.
+    pub fractal: bool,
+    /// Whether values can be shown as distances.
+    pub close: bool,
+    /// Evaluations that a ray may take.
+    pub max_steps: u32,
+}
+
+impl Quality {
+    /// That of a program, in a scene that allows this many steps.
+    pub fn of(program: &Program, max_steps: u32) -> Quality {
+        Quality {
+            bounds: program.bounds(),
+            fractal: program.is_fractal(),
+            close: program.is_close(),
+            max_steps: program.patient(max_steps),
+        }
+    }
+
+    /// That of a distance in this box.
+    pub fn distance(bounds: Aabb, max_steps: u32) -> Quality {
+        Quality {
+            bounds,
+            fractal: false,
+            close: true,
+            max_steps,
+        }
+    }
+}
+
+/// Renders a scene on the threads of the pool that it is called in. `probe` makes an evaluator of the field.
+pub fn render<P: Probe>(scene: &Scene, quality: &Quality, probe: impl Fn() -> P + Sync) -> Film {
     let settings = &scene.settings;
     let [width, height] = settings.size;
     let plain = Plain {
         scene,
         settings,
         view: View::new(&scene.camera, settings.size, settings.footprint),
-        region: Region::new(bounds),
+        region: Region::new(&quality.bounds),
+        quality: *quality,
         fallback: Material::default(),
     };
-    let samples = match settings.antialias {
-        Antialias::None => 1,
-        Antialias::Supersample { samples, .. } => samples.max(1),
-    };
+    let samples = plain.samples();
     let rows: Vec<Vec<Sample>> = (0..height)
         .into_par_iter()
         .map_init(&probe, |probe, y| {
@@ -84,10 +117,35 @@ struct Plain<'a> {
     settings: &'a Settings,
     view: View,
     region: Region,
+    quality: Quality,
     fallback: Material,
 }
 
 impl Plain<'_> {
+    /// Rays a pixel.
+    fn samples(&self) -> u32 {
+        match self.settings.antialias {
+            Antialias::None => 1,
+            Antialias::Supersample { samples, .. } => samples.max(1),
+        }
+    }
+
+    /// See [`View::narrow`].
+    fn narrow(&self, o: Vec3, d: Vec3) -> f32 {
+        self.view
+            .narrow(field(if self.view.pinhole { d } else { o }))
+    }
+
+    /// What is shown as the distance to the surface.
+    fn distance(&self, probe: &mut impl Probe, p: Vec3) -> f32 {
+        let f = probe.value(p);
+        if self.quality.close {
+            f
+        } else {
+            f / probe.gradient(p).length().max(1e-12)
+        }
+    }
+
     /// Where sample number `index` of a pixel is.
     fn jitter(&self, x: u32, y: u32, index: u32) -> [f32; 2] {
         match self.settings.antialias {
@@ -111,12 +169,12 @@ impl Plain<'_> {
         };
         let (mut t, side) = (end.t, end.side);
         for _ in 0..self.settings.discontinuity_reduction {
-            let wanted = self.view.threshold.at(t);
+            let wanted = self.view.near(t, self.narrow(o, d));
             let by = side * probe.value(o + d * t) - wanted;
             t = (t + by.clamp(-2.0 * wanted, 2.0 * wanted)).max(0.0);
         }
         let p = o + d * t;
-        let offset = 2.0 * end.f.abs().max(self.view.threshold.at(t));
+        let offset = 2.0 * end.f.abs().max(self.view.near(t, self.narrow(o, d)));
         let normal = self.normal(probe, p, d, t, side);
         let mark = probe.marks(p);
         let surface = Surface {
@@ -131,12 +189,13 @@ impl Plain<'_> {
             y,
             self.settings.seed ^ (index + 1).wrapping_mul(0x9e37_79b9),
         );
-        let (open, bent) = self.occlusion(probe, &surface, mark.object, key);
-        let samples = match self.settings.antialias {
-            Antialias::None => 1.0,
-            Antialias::Supersample { samples, .. } => samples.max(1) as f32,
+        // inside a solid there is no sky: it is shown as if there were no solid
+        let (open, bent) = if side < 0.0 {
+            (1.0, normal)
+        } else {
+            self.occlusion(probe, &surface, mark.object, key)
         };
-        let pixel = self.view.pixel.at(t) / samples.sqrt();
+        let pixel = self.view.width(t, self.narrow(o, d)) / (self.samples() as f32).sqrt();
         let (what, shininess) = {
             let place = Place::new(field(p), field(normal), field(d), pixel);
             self.substance(&mark, &place.with_orbit(mark.orbit))

@@ -8,3 +8,4 @@ mod methods;
 mod mutants;
 mod robust;
 mod scenes;
+mod surfaces;

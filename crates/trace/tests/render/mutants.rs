@@ -7,7 +7,7 @@ use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{March, Settings};
 use zeroset_trace::CpuRenderer;
-use zeroset_trace::plain::{self, Compiled, Mark, Probe};
+use zeroset_trace::plain::{self, Compiled, Mark, Probe, Quality};
 
 fn scene() -> Scene {
     let mut scene = tomczak();
@@ -43,7 +43,7 @@ fn faulty(scene: &Scene, value: f32, gradient: f32) -> Film {
     let renderer = CpuRenderer::new(Some(1)).expect("threads");
     let picture = renderer.prepare(scene).expect("a program");
     let program = picture.program();
-    plain::render(scene, &program.bounds(), || Faulty {
+    plain::render(scene, &Quality::of(program, scene.settings.max_steps), || Faulty {
         right: Compiled::new(program, None),
         value,
         gradient,

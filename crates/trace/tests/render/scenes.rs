@@ -13,7 +13,7 @@ use zeroset_scene::scene::{Object, Scene};
 use zeroset_scene::settings::{Antialias, Occlusion, Settings, Shadow};
 use zeroset_trace::CpuRenderer;
 use zeroset_trace::bench::sphere_box_ground;
-use zeroset_trace::plain::{self, Compiled};
+use zeroset_trace::plain::{self, Compiled, Quality};
 
 pub fn shape(name: &str, params: &[f64]) -> Field {
     let entry = catalogue().primitive(name).expect("in the catalogue");
@@ -137,5 +137,5 @@ pub fn reference(scene: &Scene) -> Film {
     let renderer = CpuRenderer::new(Some(1)).expect("threads");
     let picture = renderer.prepare(scene).expect("a program");
     let program = picture.program();
-    plain::render(scene, &program.bounds(), || Compiled::new(program, None))
+    plain::render(scene, &Quality::of(program, scene.settings.max_steps), || Compiled::new(program, None))
 }
