@@ -13,14 +13,17 @@ pub enum Pattern {
         /// The colour.
         colour: Vec3,
     },
-    /// Cubes of two colours.
+    /// Cubes of two colours, averaged over a pixel. The cube from the origin to (size, size, size) has the second colour; a
+    /// face between two layers of cubes shows the one under it, so that a floor at y = 0 has the first colour where x and z
+    /// are positive.
     Checker {
         /// The two.
         colours: [Vec3; 2],
         /// Side of a cube, scene units.
         size: f32,
     },
-    /// Bands of two colours across a direction.
+    /// Bands of two colours across a direction, averaged over a pixel. The band that begins at the origin has the second
+    /// colour.
     Stripes {
         /// The two.
         colours: [Vec3; 2],
@@ -29,7 +32,8 @@ pub enum Pattern {
         /// Width of a band, scene units.
         size: f32,
     },
-    /// Fractal noise between two colours.
+    /// Fractal noise between two colours. An octave of features of size `s` counts `1 - 2 w / s`, where `w` is how far a
+    /// pixel reaches over the surface: from half a feature on it is its mean.
     Noise {
         /// The two.
         colours: [Vec3; 2],
@@ -47,7 +51,9 @@ pub enum Pattern {
         /// Where the second one is.
         to: Vec3,
     },
-    /// An image projected along the three axes, blended by the normal.
+    /// An image projected along the three axes, blended by powers of the normal's parts. Seen straight on, no face shows it
+    /// mirrored: it is upright on walls, a floor shows it as a plan (up is -z), a ceiling with +z up. Copies meet at the
+    /// origin. What is see-through in the file counts as its colour.
     Triplanar {
         /// The image.
         image: Arc<Image>,

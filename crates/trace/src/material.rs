@@ -202,8 +202,10 @@ fn triangle_wave<R: Real<Scalar = f32>>(x: R) -> R {
 fn triplanar(image: &Image, size: f32, sharpness: f32, p: [f32; 3], n: [f32; 3]) -> [f32; 3] {
     let mut sum = glam::Vec3::ZERO;
     let mut weights = 0.0;
+    // relative to the largest part: high powers of all three may be too small for a number
+    let steepest = n[0].abs().max(n[1].abs()).max(n[2].abs());
     for k in 0..3 {
-        let weight = n[k].abs().powf(sharpness);
+        let weight = (n[k].abs() / steepest.max(f32::MIN_POSITIVE)).powf(sharpness);
         if weight < 1e-4 {
             continue;
         }

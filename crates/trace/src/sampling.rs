@@ -136,6 +136,23 @@ mod tests {
     }
 
     #[test]
+    fn filters_have_their_published_points() {
+        for (filter, x, right) in [
+            (Filter::Box, 0.49, 1.0),
+            (Filter::Tent, 0.25, 0.75),
+            (Filter::Tent, -0.75, 0.25),
+            (Filter::Mitchell, 0.0, 8.0 / 9.0),
+            (Filter::Mitchell, -0.5, 77.0 / 144.0),
+            (Filter::Mitchell, 1.0, 1.0 / 18.0),
+            (Filter::Mitchell, -1.5, -5.0 / 144.0),
+            (Filter::Mitchell, 2.0, 0.0),
+        ] {
+            let found: f32 = weight(filter, x);
+            assert!((found - right).abs() < 1e-6, "{filter:?} at {x}: {found}");
+        }
+    }
+
+    #[test]
     fn directions_follow_the_cosine_law() {
         for normal in [v3(0.0, 1.0, 0.0), v3(0.6, 0.0, -0.8), v3(0.0, 0.0, -1.0f32)] {
             let mut mean = v3(0.0, 0.0, 0.0f32);

@@ -184,3 +184,40 @@ fn unshadowed<S: Simd>(s: S, light: &Light, q: &mut Scratch) -> u64 {
         },
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two samples that see one point at height `h` over the ray's place `c`.
+    #[test]
+    fn the_closest_place_is_the_foot_of_the_perpendicular() {
+        let close =
+            |a: f32, b: f32| assert!((a - b).abs() < 2e-3 * b.max(1.0), "{a} instead of {b}");
+        let mut beyond = 0;
+        for (c, h) in [(2.0f32, 0.5f32), (3.0, 1.0), (1.0, 0.01), (8.0, 0.3)] {
+            for share in [0.1f32, 0.4, 0.8] {
+                let t = c * share;
+                let r = (c - t).hypot(h);
+                for z in [0.5 * r, 0.9 * r, r] {
+                    let f = (t + z - c).hypot(h);
+                    let (y, d) = closest(f, z, r);
+                    if f < r && t + z > c {
+                        // the sample is that far behind the foot
+                        close(t + z - y, c);
+                        close(d, h);
+                        beyond += 1;
+                    } else {
+                        // nothing closer has been passed
+                        close(y, 0.0);
+                        close(d, f);
+                    }
+                }
+            }
+        }
+        assert!(beyond >= 10, "{beyond}");
+        // the first sample, and a step out of the sphere of the last one
+        assert_eq!(closest(0.5, 0.0, 0.0), (0.0, 0.5));
+        assert_eq!(closest(0.5, 1.1, 1.0), (0.0, 0.5));
+    }
+}

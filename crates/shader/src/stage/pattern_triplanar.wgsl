@@ -26,8 +26,10 @@ fn pattern_triplanar(m: Material, at: Place) -> vec3f {
     let outwards = select(vec3f(1.0), vec3f(-1.0), n < vec3f(0.0));
     var sum = vec3f(0.0);
     var weights = 0.0;
+    // relative to the largest part: high powers of all three may be too small for a number
+    let steepness = abs(n) / max(max(abs(n.x), abs(n.y)), max(abs(n.z), 1.2e-38));
     for (var k = 0u; k < 3u; k++) {
-        let weight = pow(abs(n[k]), m.detail);
+        let weight = pow(steepness[k], m.detail);
         if (weight < 1e-4) {
             continue;
         }

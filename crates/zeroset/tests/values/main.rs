@@ -1,0 +1,85 @@
+//! What mathematics says a picture must hold, asked of every renderer: the plain one, the SIMD stream and the GPU.
+//!
+//! Renderers share formulas, so that comparing them with each other cannot find a formula that is wrong. Here the right
+//! numbers come from elsewhere: closed forms in double precision, of simple scenes seen straight on. A check that cannot fail
+//! proves nothing: planted faults in scenes and in the text of shaders must turn it red.
+//!
+//! The GPU's part runs on any adapter, software included, and says why it did not run where there is none.
+
+#![allow(unreachable_pub, reason = "the modules of a test are its own")]
+
+mod camera;
+mod faults;
+mod film;
+mod known;
+mod light;
+mod pattern;
+mod shadow;
+mod sky;
+mod triplanar;
+
+use known::Check;
+use zeroset::gpu::testing;
+use zeroset::scene::film::Film;
+use zeroset::scene::render::{Renderer, Silent};
+use zeroset::scene::scene::Scene;
+use zeroset::trace::CpuRenderer;
+use zeroset::trace::plain::{self, Compiled};
+
+/// Every check.
+fn checks() -> Vec<Check> {
+    let groups: [&[Check]; 7] = [
+        &camera::CHECKS,
+        &film::CHECKS,
+        &light::CHECKS,
+        &pattern::CHECKS,
+        &shadow::CHECKS,
+        &sky::CHECKS,
+        &triplanar::CHECKS,
+    ];
+    groups.concat()
+}
+
+fn check_named(name: &str) -> Check {
+    let found = checks().into_iter().find(|c| c.name == name);
+    found.unwrap_or_else(|| panic!("no check is called {name}"))
+}
+
+fn on(renderer: &dyn Renderer, scene: &Scene) -> Film {
+    renderer.render(scene, &Silent).expect("a picture").film
+}
+
+fn on_plain(renderer: &CpuRenderer, scene: &Scene) -> Film {
+    let picture = renderer.prepare(scene).expect("a program");
+    let program = picture.program();
+    plain::render(scene, &program.bounds(), || Compiled::new(program, None))
+}
+
+/// All checks with one renderer.
+fn all(draw: &dyn Fn(&Scene) -> Film) {
+    let wrong: Vec<String> = checks()
+        .iter()
+        .filter_map(|check| Some(format!("{}: {}", check.name, (check.run)(draw).err()?)))
+        .collect();
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_simd_renderer_is_right() {
+    let renderer = CpuRenderer::new(None).unwrap();
+    all(&|scene| on(&renderer, scene));
+}
+
+#[test]
+fn the_plain_renderer_is_right() {
+    let renderer = CpuRenderer::new(None).unwrap();
+    all(&|scene| on_plain(&renderer, scene));
+}
+
+#[test]
+fn the_gpu_is_right() {
+    let Some(gpu) = testing::renderer("known values on the GPU") else {
+        return;
+    };
+    all(&|scene| on(&gpu, scene));
+}

@@ -1,0 +1,158 @@
+//! The sky: what is behind everything, what comes of it to a surface, and its mirror image.
+
+use crate::known::{Check, Draw, Eye, Found, Lens, SIZE, ball, compare, light, rgb, scene};
+use glam::DVec3;
+use zeroset::scene::film::Plane;
+
+pub const CHECKS: [Check; 5] = [
+    Check {
+        name: "the sky through a pinhole",
+        run: behind,
+    },
+    Check {
+        name: "the sky in parallel rays",
+        run: parallel,
+    },
+    Check {
+        name: "a sky of one colour",
+        run: even,
+    },
+    Check {
+        name: "ambient light",
+        run: ambient,
+    },
+    Check {
+        name: "mirrors",
+        run: mirrors,
+    },
+];
+
+const TOP: [f64; 3] = [0.1, 0.3, 0.9];
+const HORIZON: [f64; 3] = [0.9, 0.8, 0.4];
+const BOTTOM: [f64; 3] = [0.5, 0.1, 0.2];
+
+fn line(ambient: f64) -> String {
+    let [top, horizon, bottom] = [TOP, HORIZON, BOTTOM].map(rgb);
+    format!("sky(top = {top}, horizon = {horizon}, bottom = {bottom}, ambient = {ambient})\n")
+}
+
+/// The horizon, and from there by the root of the sine of the height to what is straight up or down: half way at a quarter.
+fn along(y: f64) -> DVec3 {
+    let far = if y < 0.0 { BOTTOM } else { TOP };
+    light(HORIZON).lerp(light(far), y.abs().sqrt())
+}
+
+/// A camera that sees what is above and what is below.
+fn wide(lens: Lens) -> Eye {
+    Eye {
+        at: DVec3::new(1.0, 2.0, 3.0),
+        target: DVec3::new(-1.0, 2.6, -2.0),
+        up: DVec3::Y,
+        lens,
+        size: SIZE,
+    }
+}
+
+/// Something that is not in the picture.
+const BEHIND: &str = "show(sphere(0.1).move(30, 30, 300))\n";
+
+fn behind(draw: Draw) -> Found {
+    let eye = wide(Lens::Fov(110.0));
+    let film = draw(&scene(&format!("{BEHIND}{}", line(0.5)), &eye));
+    compare(&film, &eye, Plane::Colour, 2e-3, |x, y| {
+        Some(along(eye.ray(x, y).1.y))
+    })?;
+    compare(&film, &eye, Plane::Coverage, 0.0, |_, _| Some(DVec3::ZERO))
+}
+
+/// Parallel rays all see one place of the sky.
+fn parallel(draw: Draw) -> Found {
+    let eye = wide(Lens::Height(9.0));
+    let film = draw(&scene(&format!("{BEHIND}{}", line(0.5)), &eye));
+    let y = (eye.target - eye.at).normalize().y;
+    compare(&film, &eye, Plane::Colour, 1e-3, |_, _| Some(along(y)))
+}
+
+/// A ball before the sky.
+fn before(material: &str, sky: &str) -> String {
+    format!("show(sphere(1), material({material}))\nsun(strength = 0, shadow = none())\n{sky}")
+}
+
+const ALBEDO: [f64; 3] = [0.7, 0.5, 0.9];
+
+/// Normal, direction of sight and cosine between them where the ball is met; not where it is grazed.
+fn on_ball(eye: &Eye, x: f64, y: f64) -> Option<(DVec3, DVec3, f64)> {
+    let ray = eye.ray(x, y);
+    let n = ray.0 + ray.1 * ball(ray, DVec3::ZERO, 1.0)?;
+    let cosine = -n.dot(ray.1);
+    (cosine > 0.25).then_some((n, ray.1, cosine))
+}
+
+fn near() -> Eye {
+    Eye {
+        at: DVec3::new(0.5, 1.0, 3.0),
+        target: DVec3::ZERO,
+        up: DVec3::Y,
+        lens: Lens::Fov(40.0),
+        size: SIZE,
+    }
+}
+
+/// Under a sky of one colour it does not matter which way a surface faces.
+fn even(draw: Draw) -> Found {
+    let eye = near();
+    let sky = format!("sky(color = {}, ambient = 0.6)", rgb(TOP));
+    let material = format!("color = {}, roughness = 1", rgb(ALBEDO));
+    let film = draw(&scene(&before(&material, &sky), &eye));
+    let right = light(ALBEDO) * light(TOP) * 0.6;
+    compare(&film, &eye, Plane::Colour, 1e-3, |x, y| {
+        on_ball(&eye, x, y).map(|_| right)
+    })
+}
+
+/// A surface that faces up sees what lies between top and horizon, one that faces down what lies between bottom and horizon,
+/// and between them it changes evenly with the height of the normal.
+fn ambient(draw: Draw) -> Found {
+    let material = format!("color = {}, roughness = 1", rgb(ALBEDO));
+    let text = before(&material, &line(0.8));
+    for side in [0.5, 3.0, -3.0] {
+        let eye = Eye {
+            at: DVec3::new(0.5, side, 2.5),
+            ..near()
+        };
+        let film = draw(&scene(&text, &eye));
+        let right = |x, y| {
+            let (n, ..) = on_ball(&eye, x, y)?;
+            let [top, horizon, bottom] = [TOP, HORIZON, BOTTOM].map(light);
+            let (up, down) = (0.5 * (top + horizon), 0.5 * (bottom + horizon));
+            Some(light(ALBEDO) * 0.8 * down.lerp(up, 0.5 + 0.5 * n.y))
+        };
+        compare(&film, &eye, Plane::Colour, 3e-3, right)?;
+    }
+    Ok(())
+}
+
+/// A smooth metal shows the sky along the mirror direction in its colour, whiter the more it is grazed (Schlick 1994), and a
+/// smooth plastic 4 % of it over its own colour.
+fn mirrors(draw: Draw) -> Found {
+    let eye = near();
+    for metallic in [0.0, 1.0] {
+        let material = format!(
+            "color = {}, roughness = 0, metallic = {metallic}",
+            rgb(ALBEDO)
+        );
+        let film = draw(&scene(&before(&material, &line(0.8)), &eye));
+        let right = |x, y| {
+            let (n, d, cosine) = on_ball(&eye, x, y)?;
+            let mirrored = along((d + n * 2.0 * cosine).y);
+            let straight = light(ALBEDO) * metallic + DVec3::splat(0.04 * (1.0 - metallic));
+            let share = straight.lerp(DVec3::ONE, (1.0 - cosine).powi(5));
+            let [top, horizon, bottom] = [TOP, HORIZON, BOTTOM].map(light);
+            let around = (0.5 * (bottom + horizon)).lerp(0.5 * (top + horizon), 0.5 + 0.5 * n.y);
+            Some(share * mirrored + light(ALBEDO) * around * 0.8 * (1.0 - metallic))
+        };
+        compare(&film, &eye, Plane::Colour, 0.01, right)
+            .map_err(|e| format!("metallic {metallic}: {e}"))?;
+    }
+    Ok(())
+}

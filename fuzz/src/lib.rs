@@ -1,0 +1,126 @@
+//! What every input must survive: it loads or it is refused, without a panic, in time and within its memory. What loads goes
+//! to JSON and back unchanged, and what is rendered is finite.
+
+pub mod nest;
+
+use std::sync::LazyLock;
+use std::time::{Duration, Instant};
+use zeroset_scene::film::Plane;
+use zeroset_scene::json::{expand, to_text};
+use zeroset_scene::limits::Limits;
+use zeroset_scene::load::{Language, Options, load_text};
+use zeroset_scene::render::{Observer, RenderError, Renderer};
+use zeroset_scene::scene::Scene;
+use zeroset_scene::settings::{Antialias, Occlusion};
+use zeroset_trace::CpuRenderer;
+
+/// Loads a text, and what it wrote of it as JSON. `None` where it is refused.
+///
+/// # Panics
+/// Something broke that must not.
+pub fn load(text: &str, language: Language) -> Option<Scene> {
+    let limits = Limits {
+        // of the two seconds that an input has: a machine under load is slower, and an honest input is not worth more
+        seconds: 0.5,
+        ..Limits::default()
+    };
+    let options = Options {
+        limits,
+        ..Options::default()
+    };
+    match load_text("fuzz", text, language, None, &options) {
+        Ok(loaded) => {
+            let json = to_text(&expand(&loaded.scene));
+            match load_text("fuzz", &json, Language::Json, None, &options) {
+                Ok(again) => assert_eq!(json, to_text(&expand(&again.scene))),
+                // the second reading has a clock of its own
+                Err(failed) if failed.report.message().contains("seconds") => {}
+                Err(failed) => panic!("what was written cannot be read: {}", failed.report),
+            }
+            Some(loaded.scene)
+        }
+        Err(failed) => {
+            // a panic of the loader is caught and reported, so that the window survives it; here it must not pass
+            let message = failed.report.message();
+            assert!(!message.contains("broke down"), "{}", failed.report);
+            None
+        }
+    }
+}
+
+/// JSON where the text begins as JSON does, else Starlark.
+pub fn language_of(text: &str) -> Language {
+    if text.trim_start().starts_with('{') {
+        Language::Json
+    } else {
+        Language::Starlark
+    }
+}
+
+/// Ends a picture after a while.
+struct Deadline(Instant);
+
+impl Observer for Deadline {
+    fn advance(&self, _rays: u64, _total: u64) {}
+    fn is_cancelled(&self) -> bool {
+        self.0.elapsed() > Duration::from_millis(500)
+    }
+}
+
+/// Side of the pictures.
+const SIDE: u32 = 4;
+
+/// Renders a scene at 4x4, with few of everything that a scene may honestly ask much of.
+///
+/// # Panics
+/// A number of the film is none, or the film is not the same twice.
+pub fn render(mut scene: Scene) {
+    static RENDERER: LazyLock<CpuRenderer> =
+        LazyLock::new(|| CpuRenderer::new(Some(1)).expect("a thread"));
+    let few = |occlusion: &mut Occlusion| match occlusion {
+        Occlusion::Quilez { steps, .. }
+        | Occlusion::Bent { steps, .. }
+        | Occlusion::Cones { steps, .. } => *steps = (*steps).min(8),
+        Occlusion::Hemisphere { rays, .. } | Occlusion::Obscurance { rays, .. } => {
+            *rays = (*rays).min(4);
+        }
+        _ => {}
+    };
+    scene.settings.size = [SIDE; 2];
+    scene.settings.max_steps = scene.settings.max_steps.min(64);
+    if let Antialias::Supersample { samples, .. } = &mut scene.settings.antialias {
+        *samples = (*samples).min(2);
+    }
+    few(&mut scene.settings.occlusion);
+    for object in &mut scene.objects {
+        object.occlusion.as_mut().map(few);
+    }
+    scene.lights.truncate(2);
+    let nodes = scene.objects.iter().map(|o| o.field.facts().nodes);
+    if nodes.sum::<u64>() > 500 {
+        return;
+    }
+    let draw = || RENDERER.render(&scene, &Deadline(Instant::now()));
+    let (first, second) = match (draw(), draw()) {
+        (Ok(first), Ok(second)) => (first.film, second.film),
+        (Err(RenderError::Threads { .. } | RenderError::Device { .. }), _) => {
+            panic!("a scene has nothing to do with that")
+        }
+        _ => return,
+    };
+    for plane in Plane::ALL {
+        let numbers = first.plane(plane);
+        let far = plane == Plane::Depth;
+        assert!(
+            numbers
+                .iter()
+                .all(|x| x.is_finite() || (far && *x == f32::INFINITY)),
+            "{plane:?}: {numbers:?}"
+        );
+        assert_eq!(
+            numbers,
+            second.plane(plane),
+            "{plane:?} differs from run to run"
+        );
+    }
+}
