@@ -30,13 +30,14 @@ pub(crate) struct Sizes {
 pub(crate) const COUNTER_BYTES: u64 = 4 * COUNTERS as u64;
 
 impl Sizes {
-    pub(crate) fn new(frame: &Frame, planes: &[Plane]) -> Sizes {
+    /// `notes`: bytes for the notes of rays that are traced in turns, else 0.
+    pub(crate) fn new(frame: &Frame, planes: &[Plane], notes: u64) -> Sizes {
         let [_, stored, _, given] = frame.band.map(u64::from);
         let width = u64::from(frame.size[0]);
         let numbers: usize = planes.iter().map(|p| p.channels()).sum();
         let planes = 4 * numbers as u64 * width * given;
         Sizes {
-            cones: 16 * u64::from(frame.cones()),
+            cones: notes.max(16 * u64::from(frame.cones())),
             samples: size_of::<Sample>() as u64 * width * stored,
             light: size_of::<LightSum>() as u64 * width * given,
             surface: size_of::<SurfaceSum>() as u64 * width * given,
@@ -88,11 +89,13 @@ pub(crate) struct Room {
     pub(crate) binding: u64,
     /// Rows, so that what is not cut into tiles takes no longer than a tile may.
     pub(crate) rows: u32,
+    /// Bytes for the notes of rays that are traced in turns, else 0.
+    pub(crate) notes: u64,
 }
 
 impl Room {
     fn fits(&self, job: &Job, first: u32, rows: u32, planes: &[Plane]) -> bool {
-        let sizes = Sizes::new(&job.band(first, rows, planes), planes);
+        let sizes = Sizes::new(&job.band(first, rows, planes), planes, self.notes);
         sizes.total() <= self.budget && sizes.largest() <= self.binding
     }
 
@@ -125,7 +128,7 @@ impl Room {
         match good {
             0 => Err(GpuError::TooLarge {
                 what: "one row of pixels",
-                bytes: Sizes::new(&job.band(first, 1, planes), planes).total(),
+                bytes: Sizes::new(&job.band(first, 1, planes), planes, self.notes).total(),
                 adapter: adapter.to_owned(),
                 limit: self.binding.min(self.budget),
             }),
@@ -139,6 +142,7 @@ impl Room {
 mod tests {
     use super::*;
     use std::sync::Arc;
+    use zeroset_shader::Turns;
 
     fn job(size: [u32; 2], filter_kind: u32) -> Job {
         let frame = Frame {
@@ -154,6 +158,9 @@ mod tests {
             params: Vec::new(),
             code: Arc::from([0]),
             table: Vec::new(),
+            registers: 0,
+            in_turns: false,
+            turns: Turns::default(),
         }
     }
 
@@ -171,6 +178,7 @@ mod tests {
                         budget,
                         binding,
                         rows: u32::MAX,
+                        notes: 0,
                     },
                     0,
                     0,
@@ -185,7 +193,7 @@ mod tests {
                     };
                     assert!(rows > 0 && first + rows <= size[1]);
                     let frame = job.band(first, rows, &Plane::ALL);
-                    let sizes = Sizes::new(&frame, &Plane::ALL);
+                    let sizes = Sizes::new(&frame, &Plane::ALL, 0);
                     assert!(sizes.total() <= budget && sizes.largest() <= binding);
                     let [from, stored, given, count] = frame.band;
                     assert!(from <= given && from + stored >= given + count);
@@ -205,6 +213,7 @@ mod tests {
             budget: 1 << 20,
             binding: 1 << 30,
             rows: 100,
+            notes: 0,
         };
         let error = room.band(&job([1 << 20, 4], 0), 0, &Plane::ALL, "card");
         assert!(matches!(error, Err(GpuError::TooLarge { .. })), "{error:?}");
@@ -216,6 +225,7 @@ mod tests {
             budget: 1 << 30,
             binding: 1 << 30,
             rows: 48,
+            notes: 0,
         };
         assert_eq!(room.band(&job([64, 100], 1), 0, &Plane::ALL, "a"), Ok(48));
         assert_eq!(room.band(&job([64, 100], 1), 96, &Plane::ALL, "a"), Ok(4));

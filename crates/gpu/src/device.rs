@@ -13,8 +13,23 @@ use zeroset_scene::render::RenderError;
 const PATIENCE: Duration = Duration::from_secs(20);
 /// As long as this where a driver may be compiling.
 const COMPILING: Duration = Duration::from_secs(180);
+/// As long as this for work of a picture that nobody waits for any more, before the next one begins.
+const LEFT: Duration = Duration::from_secs(3);
+/// As long as this where a device is dropped.
+const GOODBYE: Duration = Duration::from_millis(200);
 /// Who waits is asked whether to stop this often.
 const LOOK: Duration = Duration::from_millis(50);
+
+/// What a device is waited for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Work {
+    /// Dispatches, which are made to take milliseconds.
+    Dispatches,
+    /// The same, where a driver may be compiling their shader.
+    Compiling,
+    /// What a picture that was cancelled left behind.
+    Left,
+}
 
 /// An opened GPU.
 pub struct Gpu {
@@ -222,10 +237,14 @@ impl Gpu {
     pub(crate) fn wait(
         &self,
         submission: &SubmissionIndex,
-        compiles: bool,
+        work: Work,
         stop: &dyn Fn() -> bool,
     ) -> Result<(), GpuError> {
-        let usual = if compiles { COMPILING } else { PATIENCE };
+        let usual = match work {
+            Work::Dispatches => PATIENCE,
+            Work::Compiling => COMPILING,
+            Work::Left => LEFT,
+        };
         let patience = self.faults.patience().unwrap_or(usual);
         let began = Instant::now();
         loop {
@@ -255,11 +274,27 @@ impl Gpu {
     }
 }
 
-/// Dropping the queue of a lost device waits for work that never ends, and panics where it was not finished. The process
-/// lives on with what little the driver has not freed.
+impl Gpu {
+    /// Whether all work is done, or soon is.
+    fn is_idle(&self) -> bool {
+        let wait = PollType::Wait {
+            submission_index: None,
+            timeout: Some(GOODBYE),
+        };
+        matches!(
+            catch_unwind(AssertUnwindSafe(|| self.device.poll(wait))),
+            Ok(Ok(status)) if status.is_queue_empty()
+        )
+    }
+}
+
+/// Dropping a queue waits for its work, which never ends on a lost device and takes as long as a driver compiles where a shader
+/// is run first; it panics where the work was not finished. Nobody who cancels a picture may have to wait for that: the
+/// process lives on with the device instead, and with what little of it the driver has not freed.
 impl Drop for Gpu {
     fn drop(&mut self) {
-        if get(&self.status.lost).is_some() {
+        if get(&self.status.lost).is_some() || !self.is_idle() {
+            tracing::debug!("{} is left as it is", self.info.title());
             std::mem::forget(self.queue.clone());
         }
     }

@@ -95,6 +95,15 @@ pub enum GpuError {
         /// What it said.
         reason: String,
     },
+    /// Loops of the shader end before they are done, and a picture would be wrong.
+    #[error(
+        "{adapter} ends the loops of a shader early where they are long, and the scene needs longer ones: its picture would \
+         be wrong"
+    )]
+    Loops {
+        /// The adapter.
+        adapter: String,
+    },
     /// The scene has no shader, or its rendering was cancelled.
     #[error(transparent)]
     Scene(RenderError),
@@ -111,6 +120,9 @@ impl GpuError {
             GpuError::OutOfMemory { .. } => {
                 Some("close what else uses the GPU, or render on the CPU")
             }
+            GpuError::Loops { .. } => Some(
+                "render on the CPU, or with fewer steps, fewer rays of occlusion or shorter lists of points",
+            ),
             GpuError::Scene(_) => None,
             _ => Some("update the driver, or render on the CPU"),
         }

@@ -1,6 +1,6 @@
 //! Submissions on their way: dispatches are collected, submitted, timed and waited for.
 
-use crate::device::Gpu;
+use crate::device::{Gpu, Work};
 use crate::error::GpuError;
 use crate::pace::{Area, TARGET};
 use crate::pipeline::{Pipelines, STAGES};
@@ -29,6 +29,10 @@ pub(crate) struct Dispatch {
     pub(crate) predicted: Option<f64>,
     /// What it took, seconds.
     pub(crate) seconds: f64,
+    /// Which turn of its rays it is, where they are traced in turns: later ones may have nothing to do.
+    pub(crate) turn: u32,
+    /// Words of notes for each of these rays.
+    pub(crate) notes: u32,
 }
 
 /// Who is told of finished dispatches, and asked whether to go on waiting.
@@ -57,8 +61,7 @@ struct Flown {
     began: Instant,
     dispatches: Vec<Dispatch>,
     stamps: Option<Stamps>,
-    /// Whether the driver may be compiling.
-    compiles: bool,
+    work: Work,
 }
 
 /// The queue of a device, as far as rendering is concerned.
@@ -124,6 +127,8 @@ impl Flight {
             corner: dispatch.area.corner,
             size: dispatch.area.size,
             index,
+            turn: dispatch.turn,
+            notes: dispatch.notes,
             ..Tile::default()
         };
         self.written.resize(number * STRIDE as usize, 0);
@@ -208,7 +213,11 @@ impl Flight {
             began,
             dispatches,
             stamps,
-            compiles: self.compiles,
+            work: if self.compiles {
+                Work::Compiling
+            } else {
+                Work::Dispatches
+            },
         });
         while self.flying.len() > AHEAD {
             self.land(watcher)?;
@@ -225,8 +234,10 @@ impl Flight {
         Ok(())
     }
 
-    /// Forgets what is recorded, and waits for what is on its way.
+    /// Forgets what is recorded, and waits for what is on its way: not as long as a driver may compile, since nobody needs it
+    /// any more.
     pub(crate) fn drain(&mut self, watcher: &mut dyn Watcher) -> Result<(), GpuError> {
+        self.flying.iter_mut().for_each(|f| f.work = Work::Left);
         self.encoder = None;
         self.open.clear();
         self.written.clear();
@@ -239,7 +250,7 @@ impl Flight {
             return Ok(());
         };
         // what is not waited for to the end stays on its way
-        (self.gpu).wait(&flown.submission, flown.compiles, &|| watcher.stops())?;
+        (self.gpu).wait(&flown.submission, flown.work, &|| watcher.stops())?;
         let Some(flown) = self.flying.pop_front() else {
             return Ok(());
         };

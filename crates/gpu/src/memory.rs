@@ -150,13 +150,11 @@ impl Memory {
     }
 }
 
+/// The counters, as shaders write them.
+pub(crate) type Counters = [u32; COUNTERS as usize];
+
 /// Copies a band from mapped bytes into the film, and returns the counters behind it.
-pub(crate) fn unpack(
-    bytes: &[u8],
-    frame: &Frame,
-    planes: &[Plane],
-    film: &mut Film,
-) -> [u64; COUNTERS as usize / 2] {
+pub(crate) fn unpack(bytes: &[u8], frame: &Frame, planes: &[Plane], film: &mut Film) -> Counters {
     let [_, _, first, rows] = frame.band.map(|n| n as usize);
     let width = frame.size[0] as usize;
     let mut at = 0;
@@ -167,6 +165,13 @@ pub(crate) fn unpack(
         target.copy_from_slice(&bytes[at..at + target.len()]);
         at += target.len();
     }
-    let words: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes[at..at + 4 * COUNTERS as usize]);
-    std::array::from_fn(|k| u64::from(words[2 * k]) | u64::from(words[2 * k + 1]) << 32)
+    counters(&bytes[at..])
+}
+
+/// The counters that bytes begin with.
+pub(crate) fn counters(bytes: &[u8]) -> Counters {
+    let mut counters = [0; COUNTERS as usize];
+    let target: &mut [u8] = bytemuck::cast_slice_mut(&mut counters);
+    target.copy_from_slice(&bytes[..size_of::<Counters>()]);
+    counters
 }

@@ -210,6 +210,8 @@ pub(crate) struct Cutter {
     above: Range<u32>,
     /// Workgroups of the current row that are done.
     done: u32,
+    /// Pixels of a tile at most, whatever they cost.
+    most: u64,
 }
 
 impl Cutter {
@@ -221,6 +223,15 @@ impl Cutter {
             below: rows / 2..rows,
             above: 0..rows / 2,
             done: 0,
+            most: u64::MAX,
+        }
+    }
+
+    /// With at most so many pixels a tile, but a workgroup at least.
+    pub(crate) fn at_most(self, pixels: u64) -> Cutter {
+        Cutter {
+            most: pixels.max(FIRST),
+            ..self
         }
     }
 
@@ -276,6 +287,9 @@ impl Cutter {
             return false;
         }
         let pixels = area.pixels();
+        if pixels > self.most {
+            return false;
+        }
         match costs.predict(area, self.height) {
             None => pixels <= FIRST,
             Some((seconds, true)) => costs.fixed() + seconds <= TARGET,

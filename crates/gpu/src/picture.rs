@@ -4,7 +4,7 @@ use crate::band::{COUNTER_BYTES, LEAST_BUDGET, Room, Sizes};
 use crate::device::Gpu;
 use crate::error::GpuError;
 use crate::flight::{Dispatch, Equipment, Flight, Watcher};
-use crate::memory::{Memory, unpack};
+use crate::memory::{Counters, Memory, counters, unpack};
 use crate::pace::{Area, Costs, Cutter, LIMIT};
 use crate::pipeline::{Layouts, Pipelines, STAGES, Set};
 use crate::timing::{Stage, Timings};
@@ -14,11 +14,20 @@ use wgpu::MapMode;
 use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::render::{Evaluations, Observer, RenderError, Statistics};
 use zeroset_shader::Job;
-use zeroset_shader::entry::{Binding, CONE_SIDES, WORKGROUP};
+use zeroset_shader::entry::{Binding, CONE_SIDES, CUT_SHORT, WAITING, WORKGROUP};
 use zeroset_shader::layout::Frame;
 
 /// Rows of the first band where cones were never measured: they are not cut into tiles.
 const FIRST_ROWS: u32 = 128;
+
+/// Bytes of the notes of all rays of a tile that is traced in turns, at most.
+const NOTES: u64 = 64 << 20;
+/// Words of notes that a ray should be able to have: more questions than loops can ask that end early.
+const WORDS: u64 = 16_384;
+/// Words of notes that it must be able to have.
+const FEWEST_WORDS: u64 = 512;
+/// Turns before the GPU is asked whether any ray still waits.
+const TURNS: u32 = 16;
 
 /// Tells an observer of rays, each once, also where a picture is begun anew.
 pub(crate) struct Progress<'a> {
@@ -100,11 +109,13 @@ impl Bench<'_> {
                 budget: self.budget.max(LEAST_BUDGET),
                 binding: self.gpu.largest_binding(),
                 rows: self.most_rows(job),
+                notes: self.notes(job),
             };
             let rows = room.band(job, first, &planes, &self.gpu.info().title())?;
             let counters = self.band(job, [first, rows], &planes, film, progress, timings)?;
-            for (sum, counter) in sums.iter_mut().zip(counters) {
-                *sum += counter;
+            let [pairs, _] = counters.as_chunks::<2>();
+            for (sum, [low, high]) in sums.iter_mut().zip(pairs) {
+                *sum += u64::from(*low) | u64::from(*high) << 32;
             }
             first += rows;
             timings.bands += 1;
@@ -136,6 +147,21 @@ impl Bench<'_> {
         })
     }
 
+    /// Bytes for the notes of rays, where they are traced in turns.
+    fn notes(&self, job: &Job) -> u64 {
+        if !job.in_turns {
+            return 0;
+        }
+        let budget = self.budget.max(LEAST_BUDGET);
+        // of a workgroup at least
+        let least =
+            4 * u64::from(WORKGROUP * WORKGROUP) * (u64::from(job.registers) + FEWEST_WORDS);
+        NOTES
+            .min(budget / 4)
+            .max(least)
+            .min(self.gpu.largest_binding())
+    }
+
     /// Rows whose cones take no longer than a dispatch may.
     fn most_rows(&self, job: &Job) -> u32 {
         if !job.prepass() {
@@ -160,9 +186,10 @@ impl Bench<'_> {
         film: &mut Film,
         progress: &mut Progress<'_>,
         timings: &mut Timings,
-    ) -> Result<[u64; 8], GpuError> {
+    ) -> Result<Counters, GpuError> {
         let frame = job.band(rows[0], rows[1], planes);
-        let sizes = Sizes::new(&frame, planes);
+        let notes = self.notes(job);
+        let sizes = Sizes::new(&frame, planes, notes);
         progress.check()?;
         self.memory.fill(
             self.gpu,
@@ -172,13 +199,24 @@ impl Bench<'_> {
             &frame,
             &sizes,
         )?;
-        let Some(groups) = self.memory.groups() else {
-            return Err(self.without("bind groups"));
+        // until all of it is done, it may be
+        self.memory.is_mapped = true;
+        let (Some(groups), Some(counters), Some(read)) = (
+            self.memory.groups(),
+            self.memory.buffer(Binding::Counters),
+            self.memory.read(),
+        ) else {
+            return Err(self.without("buffers"));
         };
         let mut run = Run {
             flight: self.flight,
             pipelines: &self.set.pipelines,
             groups,
+            gpu: self.gpu,
+            counters,
+            read,
+            words: notes / 4,
+            registers: u64::from(job.registers),
             notes: Notes {
                 share: f64::from(rows[1]) / f64::from(frame.band[1].max(1)),
                 size: frame.size,
@@ -197,19 +235,28 @@ impl Bench<'_> {
             run.warm_up(given)?;
             self.set.is_warm = true;
         }
-        if let Some(counters) = self.memory.buffer(Binding::Counters) {
-            run.flight.encoder().clear_buffer(counters, 0, None);
-        }
+        run.flight.encoder().clear_buffer(counters, 0, None);
         if job.prepass() {
             run.cones(Stage::ConesWide, &frame, stored, CONE_SIDES[0])?;
             run.cones(Stage::ConesNarrow, &frame, stored, CONE_SIDES[1])?;
         }
         for sample in 0..job.samples() {
-            run.tiles(Stage::Trace, stored, sample)?;
+            if job.in_turns {
+                run.turns(stored, sample)?;
+            } else {
+                run.tiles(Stage::Trace, stored, sample)?;
+                if !self.set.is_proven && sample + 1 < job.samples() {
+                    // the other rays of a scene that needs turns need not be traced
+                    check(run.gpu, &run.counted()?)?;
+                }
+            }
             run.tiles(Stage::Gather, given, sample)?;
         }
         run.tiles(Stage::Develop, given, 0)?;
-        self.read(&frame, &sizes, planes, film, progress, timings)
+        let counters = self.read(&frame, &sizes, planes, film, progress, timings)?;
+        check(self.gpu, &counters)?;
+        self.set.is_proven = true;
+        Ok(counters)
     }
 
     /// Reads the finished planes of a band.
@@ -221,8 +268,7 @@ impl Bench<'_> {
         film: &mut Film,
         progress: &mut Progress<'_>,
         timings: &mut Timings,
-    ) -> Result<[u64; 8], GpuError> {
-        self.memory.is_mapped = true;
+    ) -> Result<Counters, GpuError> {
         let of = |binding| self.memory.buffer(binding);
         let (Some(made), Some(counters), Some(read)) = (
             of(Binding::Planes),
@@ -260,11 +306,25 @@ impl Bench<'_> {
     }
 
     fn without(&self, reason: &str) -> GpuError {
-        GpuError::Refused {
-            adapter: self.gpu.info().title(),
-            reason: format!("the picture cannot be read: {reason}"),
-        }
+        without(self.gpu, reason)
     }
+}
+
+fn without(gpu: &Gpu, reason: &str) -> GpuError {
+    GpuError::Refused {
+        adapter: gpu.info().title(),
+        reason: format!("the picture cannot be read: {reason}"),
+    }
+}
+
+/// What counters say about loops.
+fn check(gpu: &Gpu, counters: &Counters) -> Result<(), GpuError> {
+    if counters[CUT_SHORT] != 0 {
+        return Err(GpuError::Loops {
+            adapter: gpu.info().title(),
+        });
+    }
+    Ok(())
 }
 
 /// Takes in what dispatches of a band took.
@@ -285,12 +345,17 @@ impl Watcher for Notes<'_, '_> {
             area,
             seconds,
             predicted,
+            turn,
             ..
         } = dispatch;
-        self.costs[stage].learn(&area, self.size, seconds, predicted);
         self.timings.dispatches += 1;
         self.timings.stages.0[stage] += seconds;
         self.timings.longest = self.timings.longest.max(seconds);
+        if turn > 0 {
+            // of the same rays, of which fewer and fewer are left
+            return;
+        }
+        self.costs[stage].learn(&area, self.size, seconds, predicted);
         if dispatch.stage == Stage::Trace {
             self.progress.advance(area.pixels() as f64 * self.share);
         }
@@ -315,6 +380,13 @@ struct Run<'a, 'o> {
     flight: &'a mut Flight,
     pipelines: &'a Pipelines,
     groups: &'a [wgpu::BindGroup; STAGES],
+    gpu: &'a Gpu,
+    counters: &'a wgpu::Buffer,
+    read: &'a wgpu::Buffer,
+    /// Words for all rays of a tile, notes and registers.
+    words: u64,
+    /// Words of each for registers.
+    registers: u64,
     notes: Notes<'a, 'o>,
 }
 
@@ -336,7 +408,8 @@ impl Run<'_, '_> {
         ];
         self.flight.compiles = true;
         let run = stages.into_iter().try_for_each(|stage| {
-            self.record(stage, area, Some(0.0), [1, 1], 0)?;
+            let dispatch = self.dispatch(stage, area, Some(0.0));
+            self.record(dispatch, [1, 1], 0)?;
             self.flight.finish(self.notes.progress)
         });
         self.flight.compiles = false;
@@ -358,7 +431,8 @@ impl Run<'_, '_> {
         if predicted.is_none() {
             self.finish()?;
         }
-        self.add(stage, area, predicted, groups, 0)?;
+        let dispatch = self.dispatch(stage, area, predicted);
+        self.add(dispatch, groups, 0)?;
         if predicted.is_none() {
             self.finish()?;
         }
@@ -372,7 +446,8 @@ impl Run<'_, '_> {
             if tile.is_guess {
                 self.finish()?;
             }
-            self.add(stage, tile.area, tile.predicted, tile.area.groups(), index)?;
+            let dispatch = self.dispatch(stage, tile.area, tile.predicted);
+            self.add(dispatch, tile.area.groups(), index)?;
             if tile.is_guess {
                 self.finish()?;
             }
@@ -380,38 +455,73 @@ impl Run<'_, '_> {
         Ok(())
     }
 
-    fn add(
-        &mut self,
-        stage: Stage,
-        area: Area,
-        predicted: Option<f64>,
-        groups: [u32; 2],
-        index: u32,
-    ) -> Result<(), GpuError> {
-        if self.flight.is_full(predicted) {
-            self.notes.progress.check()?;
-            self.flight.flush(&mut self.notes)?;
+    /// Traces an area in turns: each dispatch answers one question of every ray, until none has any left.
+    fn turns(&mut self, area: Area, index: u32) -> Result<(), GpuError> {
+        let most = self.words / (WORDS + self.registers);
+        let mut cutter = Cutter::new(area, self.notes.size[1]).at_most(most);
+        while let Some(tile) = cutter.next(&self.notes.costs[Stage::Trace as usize]) {
+            let mut dispatch = self.dispatch(Stage::Trace, tile.area, tile.predicted);
+            let words = self.words / tile.area.pixels().max(1);
+            dispatch.notes = u32::try_from(words).unwrap_or(u32::MAX);
+            let mut waiting = true;
+            while waiting {
+                for turn in 1..=TURNS {
+                    if turn == TURNS {
+                        let waits = 4 * WAITING as u64;
+                        (self.flight.encoder()).clear_buffer(self.counters, waits, Some(4));
+                    }
+                    self.add(dispatch, tile.area.groups(), index)?;
+                    dispatch.turn += 1;
+                }
+                let counters = self.counted()?;
+                check(self.gpu, &counters)?;
+                waiting = counters[WAITING] != 0;
+            }
         }
-        self.record(stage, area, predicted, groups, index)
+        Ok(())
     }
 
-    fn record(
-        &mut self,
-        stage: Stage,
-        area: Area,
-        predicted: Option<f64>,
-        groups: [u32; 2],
-        index: u32,
-    ) -> Result<(), GpuError> {
-        let with = Equipment {
-            pipelines: self.pipelines,
-            groups: self.groups,
+    /// The counters after all that is recorded.
+    fn counted(&mut self) -> Result<Counters, GpuError> {
+        let encoder = self.flight.encoder();
+        encoder.copy_buffer_to_buffer(self.counters, 0, self.read, 0, COUNTER_BYTES);
+        self.flight.flush(&mut self.notes)?;
+        // what it says is seen when the range is asked for
+        (self.read).map_async(MapMode::Read, ..COUNTER_BYTES, |_| {});
+        self.flight.finish(&mut self.notes)?;
+        let counted = match self.read.get_mapped_range(..COUNTER_BYTES) {
+            Ok(view) => counters(&view),
+            Err(error) => return Err(without(self.gpu, &error.to_string())),
         };
-        let dispatch = Dispatch {
+        self.read.unmap();
+        Ok(counted)
+    }
+
+    fn dispatch(&self, stage: Stage, area: Area, predicted: Option<f64>) -> Dispatch {
+        // what a warm-up notes of a workgroup is never read
+        let notes = self.words / u64::from(WORKGROUP * WORKGROUP);
+        Dispatch {
             stage,
             area,
             predicted,
             seconds: 0.0,
+            turn: 0,
+            notes: u32::try_from(notes).unwrap_or(u32::MAX),
+        }
+    }
+
+    fn add(&mut self, dispatch: Dispatch, groups: [u32; 2], index: u32) -> Result<(), GpuError> {
+        if self.flight.is_full(dispatch.predicted) {
+            self.notes.progress.check()?;
+            self.flight.flush(&mut self.notes)?;
+        }
+        self.record(dispatch, groups, index)
+    }
+
+    fn record(&mut self, dispatch: Dispatch, groups: [u32; 2], index: u32) -> Result<(), GpuError> {
+        let with = Equipment {
+            pipelines: self.pipelines,
+            groups: self.groups,
         };
         self.flight.dispatch(&with, dispatch, groups, index)
     }

@@ -91,6 +91,8 @@ pub(crate) struct Set {
     pub(crate) costs: [Costs; STAGES],
     /// Whether each has run: some drivers compile when a pipeline runs first.
     pub(crate) is_warm: bool,
+    /// Whether a picture was made with loops that all ended when they were done.
+    pub(crate) is_proven: bool,
 }
 
 /// Sets of pipelines, the one that was used last at the end.
@@ -119,6 +121,7 @@ impl Cache {
                 pipelines: compile_apart(gpu, layouts, source, observer)?,
                 costs: Default::default(),
                 is_warm: false,
+                is_proven: false,
             },
         };
         if self.sets.len() == KEPT {

@@ -1,9 +1,11 @@
 //! Scenes, from their text to a film. That films are those of the CPU is the conformance suite's to say.
 
-use zeroset_gpu::testing;
+use std::fmt::Write;
+use std::time::{Duration, Instant};
+use zeroset_gpu::{FieldForm, GpuError, testing};
 use zeroset_scene::film::Plane;
 use zeroset_scene::load::{Language, Options, load_text};
-use zeroset_scene::render::{Renderer, Silent};
+use zeroset_scene::render::{Observer, RenderError, Renderer, Silent};
 use zeroset_scene::scene::Scene;
 
 fn scene(text: &str) -> Scene {
@@ -56,4 +58,76 @@ fn a_scene_of_nothing_is_a_sky() {
     let frame = renderer.render(&scene, &Silent).expect("a picture");
     assert_eq!(frame.statistics.hits, 0);
     assert!(frame.film.plane(Plane::Coverage).iter().all(|c| *c == 0.0));
+}
+
+/// Chains that need a register a link: drivers compile arrays of them slowly, or not at all.
+#[test]
+fn a_long_chain_of_changes_is_rendered() {
+    let Some(renderer) = testing::renderer("a_long_chain_of_changes_is_rendered") else {
+        return;
+    };
+    for (links, link, [radius, height]) in [
+        (160, "round(0.001).move(y = 0.001)", [0.66, 0.16]),
+        // twisted around its axis, a ball is a ball
+        (100, "twist(2).move(y = 0.001)", [0.5, 0.1]),
+        (160, "twist(0.5).round(0).move(y = 0.001)", [0.5, 0.16]),
+    ] {
+        let text = format!(
+            "s = sphere(0.5)\nfor i in range({links}):\n    s = s.{link}\nshow(s)\ncamera((0, {height}, 4), (0, {height}, 0), fov = 40)"
+        );
+        let scene = scene(&text);
+        let began = Instant::now();
+        let frame = renderer.render(&scene, &Silent).expect("a picture");
+        println!("{links} times {link}: {:?}", began.elapsed());
+        let depth = frame.film.plane(Plane::Depth)[32 * 96 + 48];
+        assert!((depth - (4.0 - radius)).abs() < 0.03, "{link}: {depth}");
+        assert!(began.elapsed() < Duration::from_secs(60));
+    }
+}
+
+/// Cancels after some time.
+struct Patience(Instant, Duration);
+
+impl Observer for Patience {
+    fn advance(&self, _: u64, _: u64) {}
+
+    fn is_cancelled(&self) -> bool {
+        self.0.elapsed() > self.1
+    }
+}
+
+#[test]
+fn who_cancels_does_not_wait_for_the_compiler() {
+    let Some(renderer) = testing::renderer("who_cancels_does_not_wait_for_the_compiler") else {
+        return;
+    };
+    // code that takes lavapipe minutes
+    let renderer = renderer.with_form(FieldForm::Compiled);
+    let mut text = String::new();
+    for i in 0..3000 {
+        // writing to a string cannot fail
+        let _ = writeln!(text, "show(sphere(0.1).move(({}, {}, 0)))", i % 50, i / 50);
+    }
+    let scene = scene(&text);
+    let job = renderer.prepare(&scene).expect("a job");
+    for after in [200, 1500, 4000] {
+        let after = Duration::from_millis(after);
+        let patience = Patience(Instant::now(), after);
+        let mut film = zeroset_scene::film::Film::new(96, 64);
+        match renderer.render_into(&job, &mut film, &patience) {
+            Err(GpuError::Scene(RenderError::Cancelled)) => {}
+            // a fast compiler
+            Ok(_) => return,
+            Err(error) => panic!("{error}"),
+        }
+        let late = patience.0.elapsed().saturating_sub(after);
+        assert!(late < Duration::from_secs(1), "{late:?} after {after:?}");
+    }
+    let began = Instant::now();
+    drop(renderer);
+    assert!(
+        began.elapsed() < Duration::from_secs(1),
+        "{:?}",
+        began.elapsed()
+    );
 }

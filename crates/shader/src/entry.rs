@@ -7,8 +7,13 @@ pub const CONE_SIDES: [u32; 2] = [32, 8];
 /// Pixels that samples reach over the edge of their own, at most.
 pub const MARGIN: u32 = 2;
 /// Counters that shaders add to: pairs of the low and high half of 64 bits for evaluations of prepass, march, normals,
-/// occlusion, shadows, materials, and for primary rays and hits.
-pub const COUNTERS: u32 = 16;
+/// occlusion, shadows, materials, and for primary rays and hits; then [`CUT_SHORT`] and [`WAITING`].
+pub const COUNTERS: u32 = 18;
+/// Which counter is not 0 where loops of a thread ended before they were done. llvmpipe ends every loop of a thread once all
+/// of them together have made 65,535 turns, without a word, and a picture of such threads is wrong.
+pub const CUT_SHORT: usize = 16;
+/// Which counter is not 0 where a ray that is traced in turns has a question left.
+pub const WAITING: usize = 17;
 
 /// Numbers in the uniform buffer of the field's parameters: every GPU has room for them.
 pub const UNIFORM_NUMBERS: usize = 4096;
@@ -30,7 +35,8 @@ pub enum Binding {
     Code = 3,
     /// Lights, materials, objects, images: `array<vec4f>`, read only.
     Table = 4,
-    /// Starts, slopes and radii of cones: `array<vec4f>`.
+    /// Starts, slopes and radii of cones: `array<vec4f>`. Where rays are traced in turns there are no cones, and these are
+    /// the rays' notes: `array<u32>`.
     Cones = 5,
     /// [`crate::layout::Sample`] of every stored pixel.
     Samples = 6,
@@ -69,19 +75,20 @@ impl Binding {
     ];
 
     /// Its declaration in WGSL.
-    pub(crate) fn declaration(self) -> String {
+    pub(crate) fn declaration(self, in_turns: bool) -> String {
         let (space, name, kind) = match self {
             Binding::Frame => ("storage, read", "given_frame", "Frame"),
             Binding::Tile => ("storage, read", "given_tile", "Tile"),
             Binding::Params => ("storage, read", "params", "array<f32>"),
             Binding::Code => ("storage, read", "code", "array<u32>"),
             Binding::Table => ("storage, read", "table", "array<vec4f>"),
+            Binding::Cones if in_turns => ("storage, read_write", "notes", "array<u32>"),
             Binding::Cones => ("storage, read_write", "cones", "array<vec4f>"),
             Binding::Samples => ("storage, read_write", "samples", "array<Sample>"),
             Binding::Light => ("storage, read_write", "light_sums", "array<LightSum>"),
             Binding::Surface => ("storage, read_write", "surface_sums", "array<SurfaceSum>"),
             Binding::Planes => ("storage, read_write", "planes", "array<f32>"),
-            Binding::Counters => ("storage, read_write", "counters", "array<atomic<u32>, 16>"),
+            Binding::Counters => ("storage, read_write", "counters", "array<atomic<u32>, 18>"),
             Binding::Numbers => ("uniform", "numbers", "array<vec4f, 1024>"),
             Binding::Rows => ("uniform", "rows", "array<vec4f, 1024>"),
         };

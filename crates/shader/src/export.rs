@@ -200,7 +200,7 @@ fn body(scene: &Scene) -> Result<String, ExportError> {
         number(scene.settings.exposure.exp2())
     );
     let _ = writeln!(text, "const PIVOT: f32 = {};", number(pivot(&parts.frame)));
-    text += &parts.key.picture().0;
+    text += &parts.key.picture().text;
     text.push('\n');
     text += include_str!("stage/picture.wgsl");
     Ok(text)

@@ -38,7 +38,15 @@ pub const LONGEST_COMPILED: usize = 600;
 pub struct Shaders {
     form: FieldForm,
     limits: Limits,
-    texts: HashMap<Key, (Arc<str>, Arc<[u32]>)>,
+    texts: HashMap<Key, Made>,
+}
+
+/// A text and what belongs to it.
+#[derive(Clone, Debug)]
+struct Made {
+    source: Arc<str>,
+    code: Arc<[u32]>,
+    registers: u32,
 }
 
 /// Texts that are remembered.
@@ -57,7 +65,17 @@ pub struct Job {
     pub code: Arc<[u32]>,
     /// Lights, materials, objects, images.
     pub table: Vec<[f32; 4]>,
+    /// Words that the registers of an interpreted field take for each thread; 0 where the field is code.
+    pub registers: u32,
+    /// Whether each dispatch of rays answers one question of each to its field; else it traces them to the end.
+    pub in_turns: bool,
+    /// How the same is traced in turns.
+    pub turns: Turns,
 }
+
+/// What a job is made of that traces the rays of another in turns, if one can.
+#[derive(Clone, Debug, Default)]
+pub struct Turns(Option<Key>);
 
 impl Shaders {
     /// With nothing remembered.
@@ -74,22 +92,53 @@ impl Shaders {
     /// See [`RenderError`].
     pub fn prepare(&mut self, scene: &Scene) -> Result<Job, RenderError> {
         let parts = Parts::new(scene, &self.limits, self.form)?;
+        let turns = Turns(Some(parts.key.in_turns()));
+        let made = self.text(parts.key);
+        Ok(Job {
+            source: made.source,
+            frame: parts.frame,
+            params: parts.params,
+            code: made.code,
+            table: parts.table,
+            registers: made.registers,
+            in_turns: false,
+            turns,
+        })
+    }
+
+    /// The job that traces the same rays in turns: for devices whose loops end early. None where it does that already.
+    pub fn in_turns(&mut self, job: &Job) -> Option<Job> {
+        let key = job.turns.0.as_ref()?;
+        let made = self.text(key.clone());
+        Some(Job {
+            source: made.source,
+            code: made.code,
+            registers: made.registers,
+            // cones are not marched in turns
+            frame: Frame {
+                prepass: 0,
+                ..job.frame
+            },
+            in_turns: true,
+            turns: Turns::default(),
+            ..job.clone()
+        })
+    }
+
+    fn text(&mut self, key: Key) -> Made {
         if self.texts.len() > REMEMBERED {
             self.texts.clear();
         }
-        let (source, code) = (self.texts.entry(parts.key))
+        (self.texts.entry(key))
             .or_insert_with_key(|key| {
-                let (text, code) = key.source();
-                (text.into(), code.into())
+                let made = key.source();
+                Made {
+                    source: made.text.into(),
+                    code: made.code.into(),
+                    registers: made.registers,
+                }
             })
-            .clone();
-        Ok(Job {
-            source,
-            frame: parts.frame,
-            params: parts.params,
-            code,
-            table: parts.table,
-        })
+            .clone()
     }
 }
 

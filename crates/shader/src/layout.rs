@@ -163,12 +163,12 @@ shared! {
         size: [u32; 2],
         /// Which of the rays a pixel.
         index: u32,
+        /// Which turn of these rays, where they are traced in turns.
+        turn: u32,
+        /// Words of notes that there are for each of these rays.
+        notes: u32,
         /// Not used.
-        pad_a: u32,
-        /// Not used.
-        pad_b: u32,
-        /// Not used.
-        pad_c: u32,
+        pad: u32,
     }
 
     /// A light, as rows of the table.

@@ -11,4 +11,4 @@ pub mod layout;
 mod source;
 
 pub use field::FieldSource;
-pub use job::{FieldForm, Job, Shaders};
+pub use job::{FieldForm, Job, Shaders, Turns};

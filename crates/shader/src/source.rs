@@ -17,6 +17,15 @@ use zeroset_scene::material::Pattern;
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{March, Normals, Occlusion, Shading, Shadow};
 
+/// The text of a module, and what the module must find.
+pub(crate) struct Text {
+    pub(crate) text: String,
+    /// The instructions of a field that is data.
+    pub(crate) code: Vec<u32>,
+    /// Words that its registers take for each thread.
+    pub(crate) registers: u32,
+}
+
 /// What the text depends on.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Key {
@@ -24,6 +33,8 @@ pub(crate) struct Key {
     interpreted: bool,
     /// Whether the field's value may be less than the distance.
     steep: bool,
+    /// Whether rays are traced in turns.
+    in_turns: bool,
     /// Whether the parameters fit their uniform buffer.
     uniform_params: bool,
     /// Whether the table fits its uniform buffer.
@@ -46,6 +57,7 @@ impl Key {
         let mut key = Key {
             interpreted: form == FieldForm::Interpreted,
             steep: program.is_steep(),
+            in_turns: false,
             uniform_params: program.params().len() <= UNIFORM_NUMBERS,
             uniform_table: rows <= UNIFORM_ROWS,
             structure,
@@ -73,8 +85,16 @@ impl Key {
         self.structure.values.instructions.len() + self.structure.marks.instructions.len()
     }
 
+    /// The same, but that rays are traced in turns.
+    pub(crate) fn in_turns(&self) -> Key {
+        Key {
+            in_turns: true,
+            ..self.clone()
+        }
+    }
+
     /// The text of the module that a GPU renders with, and the instructions of a field that is data.
-    pub(crate) fn source(&self) -> (String, Vec<u32>) {
+    pub(crate) fn source(&self) -> Text {
         let mut text = String::new();
         for declaration in [
             Frame::declaration(),
@@ -85,38 +105,60 @@ impl Key {
             text += &declaration;
         }
         for binding in Binding::ALL {
-            text += &binding.declaration();
+            text += &binding.declaration(self.in_turns);
         }
         text += "/// Copies, which stay in registers.\nvar<private> frame: Frame;\nvar<private> tile: Tile;\n";
-        let (mut picture, code) = self.picture();
+        let Text {
+            text: mut common,
+            code,
+            registers,
+        } = self.picture();
         if self.uniform_params {
-            picture = calls(&picture, "params[", "param_at(") + PARAM;
+            common = calls(&common, "params[", "param_at(") + PARAM;
         }
         if self.uniform_table {
-            picture = calls(&picture, "table[", "table_at(") + ROW;
+            common = calls(&common, "table[", "table_at(") + ROW;
         }
-        text += &picture;
-        for stage in [
+        text += &common;
+        let stages: &[&str] = if self.in_turns {
+            &[include_str!("stage/turns.wgsl")]
+        } else {
+            &[
+                include_str!("stage/cone.wgsl"),
+                include_str!("stage/cone_main.wgsl"),
+                include_str!("stage/trace_main.wgsl"),
+            ]
+        };
+        let both = [
             include_str!("stage/count_main.wgsl"),
-            include_str!("stage/cone.wgsl"),
-            include_str!("stage/cone_main.wgsl"),
-            include_str!("stage/trace_main.wgsl"),
             include_str!("stage/film.wgsl"),
-        ] {
+        ];
+        for stage in stages.iter().chain(&both) {
             text.push('\n');
             text += stage;
         }
-        (text, code)
+        Text {
+            text,
+            code,
+            registers,
+        }
     }
 
     /// What turns a ray into a sample: everything but buffers and entry points. It uses `frame`, `params`, `table` and, for a
     /// field that is data, `code`.
-    pub(crate) fn picture(&self) -> (String, Vec<u32>) {
-        let field = if self.interpreted {
-            FieldSource::interpreted(&self.structure)
+    pub(crate) fn picture(&self) -> Text {
+        let mut field = if self.interpreted {
+            if self.in_turns {
+                FieldSource::in_memory(&self.structure)
+            } else {
+                FieldSource::interpreted(&self.structure)
+            }
         } else {
             FieldSource::compiled(&self.structure)
         };
+        if self.in_turns {
+            field = asked(field);
+        }
         let mut text = String::new();
         for declaration in [
             Light::declaration(),
@@ -144,7 +186,11 @@ impl Key {
         }
         text += &self.pattern_colour();
         text += &self.occlusion();
-        (text, field.code)
+        Text {
+            text,
+            code: field.code,
+            registers: field.registers,
+        }
     }
 
     /// The stages that the methods of this scene need.
@@ -248,6 +294,16 @@ impl Key {
             "Openness(1.0, at.normal)",
         )
     }
+}
+
+/// The field under the names by which rays in turns ask it.
+fn asked(mut field: FieldSource) -> FieldSource {
+    for name in ["field(", "field_gradient(", "field_marks("] {
+        let declared = format!("fn {name}p: vec3f)");
+        field.text = (field.text).replacen(&declared, &format!("fn asked_{name}p: vec3f)"), 1);
+    }
+    field.text += &format!("const REGISTERS: u32 = {}u;\n", field.registers);
+    field
 }
 
 /// The text with reads of an array as calls of a function.

@@ -10,6 +10,7 @@ use zeroset_scene::material::{Image, Pattern};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Filter, March, Normals, Occlusion, Shading, Shadow};
 use zeroset_shader::entry::{Binding, ENTRIES};
+use zeroset_shader::export::ExportError;
 use zeroset_shader::layout::{
     Frame, Light, LightSum, Material, Occluder, Sample, Shared, SurfaceSum, Tile,
 };
@@ -258,33 +259,104 @@ fn layouts_are_the_shaders() {
 fn entry_points_use_the_buffers_that_they_state() {
     let scene = scene("show(sphere(1))");
     for form in [FieldForm::Compiled, FieldForm::Interpreted] {
-        let job = Shaders::new(form).prepare(&scene).expect("a job");
+        let mut shaders = Shaders::new(form);
+        let job = shaders.prepare(&scene).expect("a job");
         let (module, info) = validate(&job.source, "sphere");
-        assert_eq!(module.entry_points.len(), ENTRIES.len());
-        for (k, point) in module.entry_points.iter().enumerate() {
-            let entry = ENTRIES
-                .iter()
-                .find(|e| e.name == point.name)
-                .expect("a known entry point");
-            let uses = info.get_entry_point(k);
-            for (handle, variable) in module.global_variables.iter() {
-                if let Some(binding) = &variable.binding
-                    && !uses[handle].is_empty()
-                {
-                    let which = Binding::ALL[binding.binding as usize];
-                    assert!(
-                        entry.bindings.contains(&which),
-                        "{} uses {which:?}",
-                        entry.name
-                    );
-                }
+        check_entries(&module, &info);
+        let turned = shaders.in_turns(&job).expect("a job in turns");
+        let (module, info) = validate(&turned.source, "sphere in turns");
+        check_entries(&module, &info);
+    }
+}
+
+fn check_entries(module: &naga::Module, info: &ModuleInfo) {
+    assert_eq!(module.entry_points.len(), ENTRIES.len());
+    for (k, point) in module.entry_points.iter().enumerate() {
+        let entry = ENTRIES
+            .iter()
+            .find(|e| e.name == point.name)
+            .expect("a known entry point");
+        let uses = info.get_entry_point(k);
+        for (handle, variable) in module.global_variables.iter() {
+            if let Some(binding) = &variable.binding
+                && !uses[handle].is_empty()
+            {
+                let which = Binding::ALL[binding.binding as usize];
+                assert!(
+                    entry.bindings.contains(&which),
+                    "{} uses {which:?}",
+                    entry.name
+                );
             }
-            let storage = entry
-                .bindings
-                .iter()
-                .filter(|b| !matches!(b, Binding::Numbers | Binding::Rows))
-                .count();
-            assert!(storage <= 8, "{} has {storage} storage buffers", entry.name);
+        }
+        let storage = entry
+            .bindings
+            .iter()
+            .filter(|b| !matches!(b, Binding::Numbers | Binding::Rows))
+            .count();
+        assert!(storage <= 8, "{} has {storage} storage buffers", entry.name);
+    }
+}
+
+/// The shader that traces rays in turns, for every scene: it asks the field in one place.
+#[test]
+fn every_scene_can_be_traced_in_turns() {
+    for path in scenes() {
+        let Ok(loaded) = load(&path, &Options::default()) else {
+            continue;
+        };
+        for form in [FieldForm::Compiled, FieldForm::Interpreted] {
+            let mut shaders = Shaders::new(form);
+            let job = shaders.prepare(&loaded.scene).expect("a job");
+            let turned = shaders.in_turns(&job).expect("a job in turns");
+            assert!(turned.in_turns && !turned.prepass());
+            assert!(shaders.in_turns(&turned).is_none());
+            validate(&turned.source, &format!("{} {form:?}", path.display()));
+            for name in ["field(", "field_gradient(", "field_marks("] {
+                let (asked, told) = (format!("asked_{name}"), format!("fn {name}p: vec3f)"));
+                // declared and called once
+                assert_eq!(turned.source.matches(&asked).count(), 2, "{name}");
+                assert_eq!(turned.source.matches(&told).count(), 1, "{name}");
+            }
+            // a word for every register that the program has
+            assert_eq!(turned.registers > 0, form == FieldForm::Interpreted);
+        }
+    }
+}
+
+#[test]
+fn large_scenes_are_exported_or_refused() {
+    let parts = |n: usize| {
+        format!(
+            "for i in range({n}):\n    show(sphere(0.1).move((i % 50, i // 50, 0)), material(color = hsv(i % 360, 0.5, 0.5)))"
+        )
+    };
+    let chain = |n: usize| {
+        format!(
+            "s = sphere()\nfor i in range({n}):\n    s = s.round(0.001).twist(1).move(y = 0.001)\nshow(s)"
+        )
+    };
+    for (text, fits) in [
+        (parts(200), true),
+        (parts(5000), false),
+        (chain(160), true),
+        (chain(168), true),
+    ] {
+        let scene = scene(&text);
+        match (export::wgsl(&scene), export::glsl(&scene)) {
+            (Ok(wgsl), Ok(_)) if fits => {
+                validate(&wgsl, &text);
+            }
+            (Err(ExportError::Large { count, .. }), Err(ExportError::Large { .. })) if !fits => {
+                assert!(count > 4000, "{count}");
+            }
+            (wgsl, glsl) => panic!("{text}: {:?}, {:?}", wgsl.err(), glsl.err()),
+        }
+        for form in [FieldForm::Auto, FieldForm::Interpreted] {
+            let mut shaders = Shaders::new(form);
+            let job = shaders.prepare(&scene).expect("a job");
+            validate(&job.source, &text);
+            validate(&shaders.in_turns(&job).expect("a job").source, &text);
         }
     }
 }

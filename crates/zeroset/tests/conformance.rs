@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use zeroset::gpu::{GpuRenderer, testing};
 use zeroset::output::compare::conform::{BUDGETS, Budget, Difference, compare, differing};
 use zeroset::scene::film::{Film, Plane};
-use zeroset::scene::load::{Options, load};
+use zeroset::scene::load::{Language, Options, load, load_text};
 use zeroset::scene::render::{Renderer, Silent};
 use zeroset::scene::scene::Scene;
 use zeroset::scene::settings::{
@@ -16,6 +16,9 @@ use zeroset::scene::settings::{
 use zeroset::shader::FieldForm;
 use zeroset::trace::CpuRenderer;
 use zeroset::trace::plain::{self, Compiled, Quality};
+
+#[path = "conformance/large.rs"]
+mod large;
 
 const SIZE: [u32; 2] = [96, 72];
 
@@ -271,8 +274,58 @@ fn the_gpu_filters_as_the_cpu() {
     }
 }
 
+/// A wall on a floor, white, under a sky that is as bright as high up it is: nothing else lights them.
+fn wall() -> Scene {
+    let text = "
+show(box((1, 8, 16)).move((-0.5, 4, 0)), material(color = \"white\"))
+show(plane(), material(color = \"white\"))
+camera(eye = (3, 1.2, 0), target = (0, 0.5, 0), fov = 40)
+";
+    let options = Options {
+        size: Some(SIZE),
+        ..Options::default()
+    };
+    let mut scene = load_text("wall.star", text, Language::Starlark, None, &options)
+        .unwrap_or_else(|e| panic!("{}", e.report))
+        .scene;
+    scene.settings.antialias = Antialias::None;
+    scene.settings.shading = Shading::Lambert;
+    scene.lights.clear();
+    (scene.sky.top, scene.sky.ambient) = ([1.0; 3].into(), 1.0);
+    (scene.sky.horizon, scene.sky.bottom) = ([0.0; 3].into(), [0.0; 3].into());
+    scene
+}
+
+/// At the foot of a wall a quarter of all directions is open. Weighted by the cosine to the wall's normal x, the mean of them
+/// has the direction (integral of x x, integral of x y) = (pi / 3, 2 / 3): its height is 0.537, where the normal's is 0. The
+/// sky of [`wall`] gives (1 + height) / 4 of its light there.
+#[test]
+fn the_light_at_the_foot_of_a_wall_comes_from_the_open_side() {
+    let scene = wall();
+    let heights = |film: &Film| -> Vec<f32> {
+        let [width, height] = SIZE.map(|n| n as usize);
+        let column = width / 2;
+        let foot = (0..height).rev().map(|y| y * width + column);
+        let at = |plane: Plane, i: usize| film.plane(plane)[plane.channels() * i];
+        foot.filter(|i| at(Plane::Object, *i) == 1.0)
+            .map(|i| {
+                4.0 * at(Plane::Colour, i) / (at(Plane::Albedo, i) * at(Plane::Occlusion, i)) - 1.0
+            })
+            .collect()
+    };
+    let by_cpu = heights(&on(&CpuRenderer::new(None).unwrap(), &scene));
+    println!("{by_cpu:?}");
+    // the lowest pixels of the wall
+    assert!((by_cpu[1] - 0.537).abs() < 0.12, "{by_cpu:?}");
+    let Some(gpu) = testing::renderer("the foot of a wall on the GPU") else {
+        return;
+    };
+    let by_gpu = heights(&on(&gpu, &scene));
+    assert!((by_gpu[1] - 0.537).abs() < 0.12, "{by_gpu:?}");
+}
+
 /// Faults in the text of a shader, each of which must be noticed in a plane.
-const FAULTS: [(&str, &str, &str, Plane); 9] = [
+const FAULTS: [(&str, &str, &str, Plane); 10] = [
     (
         "rays that stop too early",
         "return frame.threshold.x * t + frame.threshold.y;",
@@ -322,6 +375,12 @@ const FAULTS: [(&str, &str, &str, Plane); 9] = [
         Plane::Object,
     ),
     (
+        "bent normals that are ignored",
+        "ambient_light(seen.bent.y)",
+        "ambient_light(at.normal.y)",
+        Plane::Colour,
+    ),
+    (
         "residuals that are not measured",
         "abs(residual)",
         "abs(residual) + 2.0 * pixel_here",
@@ -334,10 +393,13 @@ fn planted_faults_are_noticed() {
     let Some(gpu) = testing::renderer("planted faults") else {
         return;
     };
-    let scene = hello();
-    let right = on(&CpuRenderer::new(None).unwrap(), &scene);
-    let draw = |gpu: &GpuRenderer, from: &str, to: &str| {
-        let mut job = gpu.prepare(&scene).expect("a job");
+    let cpu = CpuRenderer::new(None).unwrap();
+    let scenes = [hello(), wall()].map(|scene| {
+        let right = on(&cpu, &scene);
+        (scene, right)
+    });
+    let draw = |gpu: &GpuRenderer, scene: &Scene, from: &str, to: &str| {
+        let mut job = gpu.prepare(scene).expect("a job");
         assert!(job.source.contains(from), "no `{from}` in the shader");
         job.source = job.source.replace(from, to).into();
         let mut film = Film::new(SIZE[0], SIZE[1]);
@@ -346,7 +408,9 @@ fn planted_faults_are_noticed() {
         film
     };
     for (what, from, to, plane) in FAULTS {
-        let off = differing(&scene, &draw(&gpu, from, to), &right, &BUDGETS);
+        // light from everywhere shows by itself on the wall only
+        let (scene, right) = &scenes[usize::from(what.contains("bent"))];
+        let off = differing(scene, &draw(&gpu, scene, from, to), right, &BUDGETS);
         assert!(
             off.iter().any(|d| d.plane == plane),
             "{what} went unnoticed: {off:?}"
@@ -354,9 +418,9 @@ fn planted_faults_are_noticed() {
         none(
             check(
                 "the same without the fault",
-                &scene,
-                &draw(&gpu, from, from),
-                &right,
+                scene,
+                &draw(&gpu, scene, from, from),
+                right,
             )
             .into_iter()
             .collect(),

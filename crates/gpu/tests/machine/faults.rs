@@ -3,7 +3,7 @@
 use crate::{Counting, check, toy};
 use std::sync::PoisonError;
 use std::time::{Duration, Instant};
-use zeroset_gpu::testing::{Faults, with_faults};
+use zeroset_gpu::testing::{self, Faults, with_faults};
 use zeroset_gpu::{Choice, GpuError, GpuRenderer, Kind};
 use zeroset_scene::film::Film;
 use zeroset_scene::render::{RenderError, Silent};
@@ -147,6 +147,41 @@ fn a_device_that_does_not_answer_is_lost() {
         other => panic!("{other:?}"),
     }
     assert!(began.elapsed() < Duration::from_secs(30));
+}
+
+/// llvmpipe ends all loops of a thread once they have made 65,535 turns together, those of inner loops counted in.
+#[test]
+fn loops_that_end_early_are_an_error() {
+    let Some(renderer) = testing::renderer("loops_that_end_early_are_an_error") else {
+        return;
+    };
+    let ends_early = renderer.adapter().name.contains("llvmpipe");
+    let flat = "for (var i = 0u; i < u32(params[0]); i++) { work = fract(work * 1.3 + f32(i) * table[0].x); }";
+    let nested = "for (var j = 0u; j < u32(params[0]); j++) { for (var i = 0u; i < u32(params[0]); i++) { work = \
+                  fract(work * 1.3 + f32(i) * table[0].x); } }";
+    let split = "for (var j = 0u; j < u32(params[0]); j++) { work = fract(work * 1.3 + f32(j) * table[0].x); } \
+                 for (var i = 0u; i < u32(params[0]); i++) { work = fract(work * 1.7 + f32(i) * table[0].x); }";
+    for (text, turns, long) in [
+        (flat, 65_000.0, false),
+        (flat, 66_000.0, true),
+        (nested, 250.0, false),
+        (nested, 260.0, true),
+        (split, 32_000.0, false),
+        (split, 33_000.0, true),
+    ] {
+        let mut job = toy([20, 20], 2, turns);
+        assert!(job.source.contains(flat));
+        job.source = job.source.replace(flat, text).into();
+        let mut film = Film::new(20, 20);
+        match renderer.render_into(&job, &mut film, &Silent) {
+            Ok(_) => {
+                assert!(!(long && ends_early), "{turns} turns of {text}");
+                check(&film, &job);
+            }
+            Err(GpuError::Loops { .. }) => assert!(long && ends_early, "{turns} turns of {text}"),
+            Err(error) => panic!("{error}"),
+        }
+    }
 }
 
 #[test]

@@ -32,6 +32,9 @@ fn toy(size: [u32; 2], samples: u32, work: f32) -> Job {
         params: vec![work],
         code: vec![7].into(),
         table: vec![[0.7; 4]],
+        registers: 0,
+        in_turns: false,
+        turns: zeroset_shader::Turns::default(),
     }
 }
 

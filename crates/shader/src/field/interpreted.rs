@@ -5,18 +5,20 @@
 //! apart. Where marks are the same everywhere there are no instructions for them, and the head holds the numbers of the
 //! object and the material, plus one.
 
-use super::{FieldSource, Functions, MARKS, Operand, has_traps, name, plain_marks, steps};
+use super::{
+    FieldSource, Functions, MARKS, Operand, Registers, has_traps, memory, name, plain_marks, steps,
+};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use zeroset_field::op::recorded::Form;
 use zeroset_field::program::{Code, Instruction, Operation, Structure};
 
 /// Words before the first instruction.
-const HEAD: u32 = 4;
+pub(super) const HEAD: u32 = 4;
 /// Words of an instruction.
-const WORDS: u32 = 3;
+pub(super) const WORDS: u32 = 3;
 
-pub(super) fn source(structure: &Structure) -> FieldSource {
+pub(super) fn source(structure: &Structure, place: Registers) -> FieldSource {
     let (marked, result) = steps(&structure.marks);
     let plain = match result {
         Operand::Step(i) => plain_marks(&marked)[i],
@@ -31,7 +33,12 @@ pub(super) fn source(structure: &Structure) -> FieldSource {
     let mut registers = [FEWEST_POINTS, FEWEST_VALUES];
     for (k, list) in lists.iter().enumerate() {
         let points = points(list);
-        code.extend((list.instructions.iter()).flat_map(|i| operations.words(i, points)));
+        code.extend((list.instructions.iter()).flat_map(|i| operations.words(i, points, place)));
+        if place == Registers::Memory {
+            // what fills the last turn up does nothing
+            let missing = list.instructions.len().wrapping_neg() % memory::UNROLLED as usize;
+            code.extend([memory::NOTHING, 0, 0].repeat(missing));
+        }
         code[2 * k] = code.len() as u32;
         code[2 * k + 1] = u32::from(list.result) - 3 * points;
         let values = u32::from(list.registers) - 3 * points;
@@ -42,14 +49,21 @@ pub(super) fn source(structure: &Structure) -> FieldSource {
         code[2] = number(plain.object);
         code[3] = number(plain.material);
     }
+    let registers = registers.map(u32::next_power_of_two);
+    let text = match place {
+        Registers::Private => text,
+        Registers::Memory => memory::text,
+    };
     FieldSource {
-        text: text(
-            &operations,
-            registers.map(u32::next_power_of_two),
-            plain.is_none(),
-        ),
+        text: text(&operations, registers, plain.is_none()),
         code,
+        registers: words(registers),
     }
+}
+
+/// Words that registers take: those for gradients, or those for marks.
+fn words([points, values]: [u32; 2]) -> u32 {
+    (12 * points + 4 * values).max(3 * points + 9 * values)
 }
 
 /// Room for registers, in powers of two from these on, so that programs share shaders.
@@ -65,7 +79,7 @@ fn points(code: &Code) -> u32 {
 }
 
 /// The operations that a program uses, by name, with the numbers that they have in `code`. Marks come behind them.
-struct Operations(BTreeMap<String, (u32, Operation)>);
+pub(super) struct Operations(BTreeMap<String, (u32, Operation)>);
 
 impl Operations {
     fn of(lists: &[&Code]) -> Operations {
@@ -78,17 +92,17 @@ impl Operations {
         Operations(numbered.collect())
     }
 
-    fn iter(&self) -> impl Iterator<Item = (u32, Operation)> {
+    pub(super) fn iter(&self) -> impl Iterator<Item = (u32, Operation)> {
         self.0.values().copied()
     }
 
     /// Numbers of the two marks: material, object.
-    fn marks(&self) -> [u32; 2] {
+    pub(super) fn marks(&self) -> [u32; 2] {
         let n = self.0.len() as u32;
         [n, n + 1]
     }
 
-    fn words(&self, i: &Instruction, points: u32) -> [u32; WORDS as usize] {
+    fn words(&self, i: &Instruction, points: u32, place: Registers) -> [u32; WORDS as usize] {
         let point = |r: u16| u32::from(r) / 3;
         let value = |r: u16| u32::from(r) - 3 * points;
         let (number, at) = match i.operation {
@@ -98,6 +112,9 @@ impl Operations {
             operation => (self.0[&name(operation, Form::Value)].0, i.at),
         };
         let (out, a, b) = match i.operation {
+            // points are read in one place from memory: that of a change
+            Operation::Leaf(_) if place == Registers::Memory => (value(i.out), 0, point(i.a)),
+            Operation::Warp(_) if place == Registers::Memory => (point(i.out), 0, point(i.a)),
             Operation::Leaf(_) => (value(i.out), point(i.a), 0),
             Operation::Warp(_) => (point(i.out), point(i.a), 0),
             Operation::Change(_) => (value(i.out), value(i.a), point(i.b)),
@@ -195,7 +212,7 @@ fn run(name: &str, result: &str, values: &str) -> String {
 }
 
 /// An instruction.
-const FETCH: &str = "struct FieldStep {
+pub(super) const FETCH: &str = "struct FieldStep {
     operation: u32,
     out: u32,
     a: u32,
@@ -283,7 +300,7 @@ fn marks(operations: &Operations, functions: &mut Functions) -> String {
 }
 
 /// `field_marks` where they are the same everywhere.
-const PLAIN_MARKS: &str = "fn field_marks(p: vec3f) -> Marks {
+pub(super) const PLAIN_MARKS: &str = "fn field_marks(p: vec3f) -> Marks {
     return Marks(f32(code[2]) - 1.0, f32(code[3]) - 1.0, -1.0, 0.0, vec4f());
 }
 ";

@@ -10,6 +10,7 @@ use zeroset_field::program::{Code, Operation, Structure};
 
 mod compiled;
 mod interpreted;
+mod memory;
 
 /// The field's part of a shader module, in WGSL.
 ///
@@ -27,6 +28,8 @@ pub struct FieldSource {
     pub text: String,
     /// What the module must find in `code`.
     pub code: Vec<u32>,
+    /// Words that the registers of an interpreted field take for each thread; 0 where the field is code.
+    pub registers: u32,
 }
 
 impl FieldSource {
@@ -36,14 +39,30 @@ impl FieldSource {
             text: compiled::text(structure),
             // a buffer must not be empty
             code: vec![0],
+            registers: 0,
         }
     }
 
     /// The field as data. The text depends on nothing but which operations there are, the number of registers (in coarse
     /// steps), and whether marks differ from place to place.
     pub fn interpreted(structure: &Structure) -> FieldSource {
-        interpreted::source(structure)
+        interpreted::source(structure, Registers::Private)
     }
+
+    /// As [`FieldSource::interpreted`], for drivers that compile long for arrays of registers and that allow few turns of
+    /// loops: registers lie in a buffer, which the module declares by the functions `cell` and `set_cell`.
+    pub(crate) fn in_memory(structure: &Structure) -> FieldSource {
+        interpreted::source(structure, Registers::Memory)
+    }
+}
+
+/// Where the registers of an interpreted field are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Registers {
+    /// In arrays of the thread.
+    Private,
+    /// In a buffer.
+    Memory,
 }
 
 const MARKS: &str = include_str!("../stage/marks.wgsl");
