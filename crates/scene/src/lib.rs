@@ -13,6 +13,7 @@ pub mod light;
 pub mod limits;
 pub mod load;
 pub mod material;
+pub mod naming;
 pub mod render;
 pub mod report;
 pub mod scene;
