@@ -528,6 +528,9 @@ fn hemisphere<S: Simd, P: Penumbra<S>>(
     q.hits.open[range.clone()].fill(0.0);
     let scramble = std::mem::take(&mut q.scramble);
     for index in 0..rays {
+        if solid.stop.is_set() {
+            break;
+        }
         let aim = Around {
             index,
             reach,
