@@ -179,7 +179,7 @@ mod tests {
     fn evaluations_are_about_those_of_the_picture() {
         for text in [
             "show(sphere())\nshow(plane())\nrender(size = (320, 240), aa = none())",
-            "show(box((1, 2, 1)))\nrender(size = (200, 300), aa = 4, ao = none())",
+            "show(box((1, 2, 1)))\nrender(size = (200, 300), aa = supersample(4), ao = none())",
             "show(plane())\nrender(size = (256, 256), ao = hemisphere(16))",
         ] {
             let scene = scene(text);
@@ -206,7 +206,7 @@ mod tests {
     #[test]
     fn a_picture_without_end_is_estimated_soon() {
         let began = Instant::now();
-        let text = "show(sphere())\nrender(size = (4000, 4000), aa = 1024, ao = hemisphere(4096))";
+        let text = "show(sphere())\nrender(size = (4000, 4000), aa = supersample(1024), ao = hemisphere(4096))";
         let estimate = cost(&scene(text)).unwrap();
         assert!(estimate.seconds > 600.0, "{estimate:?}");
         assert!(began.elapsed() < Duration::from_secs(20));

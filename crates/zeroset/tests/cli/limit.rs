@@ -3,8 +3,7 @@
 use crate::run::{BALL, Folder};
 
 /// A scene that takes hours: 64 rays a pixel, 4096 more from each.
-const SLOW: &str =
-    "show(sphere(0.8))\nshow(plane().move(y = -0.8))\nrender(ao = hemisphere(4096), aa = 64)\n";
+const SLOW: &str = "show(sphere(0.8))\nshow(plane().move(y = -0.8))\nrender(ao = hemisphere(4096), aa = supersample(64))\n";
 
 #[test]
 fn a_limit_ends_a_picture_with_what_there_is() {
@@ -39,7 +38,10 @@ fn a_limit_ends_a_picture_with_what_there_is() {
     // the ball is there, everywhere: a picture without occlusion is much the same
     folder.write(
         "plain.star",
-        SLOW.replace("hemisphere(4096), aa = 64", "none(), aa = none()"),
+        SLOW.replace(
+            "hemisphere(4096), aa = supersample(64)",
+            "none(), aa = none()",
+        ),
     );
     folder.good("render plain.star --size 256x192");
     let rmse = folder.good("compare plain.png scene.png --json").json()["rmse"]
@@ -50,7 +52,7 @@ fn a_limit_ends_a_picture_with_what_there_is() {
 
 #[test]
 fn a_limit_that_is_not_reached_changes_nothing() {
-    let folder = Folder::with("show(sphere(0.8))\nrender(aa = 4)\n");
+    let folder = Folder::with("show(sphere(0.8))\nrender(aa = supersample(4))\n");
     folder.good("render scene.star --size 150x100 -o a.exr");
     let ended = folder.good("render scene.star --size 150x100 -o b.exr --time-limit 600 --json");
     assert_eq!(ended.json()["finished"], 1.0);
@@ -98,7 +100,7 @@ fn a_limit_that_nothing_meets_makes_no_file() {
 #[test]
 fn check_says_what_a_picture_costs() {
     let folder = Folder::with(
-        "show(sphere(0.8))\nshow(plane().move(y = -0.8))\nrender(size = (200, 150), aa = 4)\n",
+        "show(sphere(0.8))\nshow(plane().move(y = -0.8))\nrender(size = (200, 150), aa = supersample(4))\n",
     );
     let cost = folder.good("check scene.star --json").json()["cost"].clone();
     let found = cost["evaluations_per_pixel"].as_f64().unwrap();

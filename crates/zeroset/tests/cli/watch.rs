@@ -140,7 +140,7 @@ fn files_that_never_rest_are_rendered() {
 
 #[test]
 fn a_mended_file_is_taken_while_a_slow_picture_is_rendered() {
-    let slow = "show(sphere())\nrender(size = (512, 512), ao = hemisphere(4096), aa = 4096)\n";
+    let slow = "show(sphere())\nrender(size = (512, 512), ao = hemisphere(4096), aa = supersample(4096))\n";
     let folder = Folder::with(slow);
     let watching = Watching::start(&folder, "render scene.star --watch");
     for number in 0..3 {
