@@ -127,10 +127,10 @@ impl CpuRenderer {
         }
     }
 
-    /// Bytes that a picture of the scene takes while it is rendered, apart from the scene itself.
-    pub fn memory(&self, scene: &Scene) -> u64 {
+    /// Bytes that a picture of the scene takes while these planes are rendered, apart from the scene itself.
+    pub fn memory(&self, scene: &Scene, planes: &[Plane]) -> u64 {
         let [width, height] = scene.settings.size;
-        let numbers: usize = Plane::ALL.iter().map(|p| p.channels()).sum();
+        let numbers: usize = planes.iter().map(|p| p.channels()).sum();
         let sums = match scene.settings.antialias {
             Antialias::None => 0,
             Antialias::Supersample { .. } => Area::count([width, height]) * ACCUMULATORS,

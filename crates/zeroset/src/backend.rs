@@ -8,7 +8,7 @@ use std::cell::OnceCell;
 use std::cell::RefCell;
 #[cfg(feature = "gpu")]
 use zeroset_gpu::{Choice, GpuRenderer};
-use zeroset_scene::film::Film;
+use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::render::{Frame, Observer, RenderError, Renderer, Statistics};
 use zeroset_scene::scene::Scene;
 use zeroset_trace::CpuRenderer;
@@ -105,10 +105,11 @@ impl<'a> Engine<'a> {
         Ok(engine)
     }
 
-    /// Renders. Where the GPU fails and the CPU may stand in, says so, calls `restart` and begins anew.
+    /// Renders at least these planes. Where the GPU fails and the CPU may stand in, says so, calls `restart` and begins anew.
     pub(crate) fn render(
         &self,
         scene: &Scene,
+        planes: &[Plane],
         observer: &dyn Observer,
         restart: &dyn Fn(),
     ) -> Result<(Frame, Used), RenderError> {
@@ -130,18 +131,25 @@ impl<'a> Engine<'a> {
         }
         #[cfg(not(feature = "gpu"))]
         let _ = (restart, self.console);
-        Ok((self.cpu()?.render(scene, observer)?, Used::Cpu))
+        let renderer = self.cpu()?;
+        let picture = renderer.prepare(scene)?;
+        let [width, height] = scene.settings.size;
+        // a plane that nobody looks at takes gigabytes of a large picture
+        let mut film = Film::with(width, height, planes);
+        let statistics = renderer.render_into(&picture, &mut film, observer)?;
+        Ok((Frame { film, statistics }, Used::Cpu))
     }
 
     /// As [`Engine::render`], and keeps what is finished when the observer ends it; `None` where nothing is kept.
     pub(crate) fn render_part(
         &self,
         scene: &Scene,
+        planes: &[Plane],
         observer: &dyn Observer,
         restart: &dyn Fn(),
     ) -> Result<Option<Part>, RenderError> {
         if self.is_on_gpu() {
-            let (frame, used) = match self.render(scene, observer, restart) {
+            let (frame, used) = match self.render(scene, planes, observer, restart) {
                 Err(RenderError::Cancelled) => return Ok(None),
                 other => other?,
             };
@@ -155,7 +163,7 @@ impl<'a> Engine<'a> {
         let renderer = self.cpu()?;
         let picture = renderer.prepare(scene)?;
         let [width, height] = scene.settings.size;
-        let mut film = Film::new(width, height);
+        let mut film = Film::with(width, height, planes);
         let part = renderer.render_part(&picture, &mut film, observer);
         Ok(Some(Part {
             film,
@@ -251,10 +259,12 @@ mod tests {
         let loaded = load_text("a.star", text, Language::Starlark, None, &options);
         let scene = loaded.expect("a valid scene").scene;
         let restarts = Cell::new(0);
-        let result = engine.render(&scene, &Silent, &|| restarts.set(restarts.get() + 1));
+        let result = engine.render(&scene, &Plane::ALL, &Silent, &|| {
+            restarts.set(restarts.get() + 1)
+        });
         if result.is_ok() {
             // the GPU is not asked again
-            let again = engine.render(&scene, &Silent, &|| restarts.set(9));
+            let again = engine.render(&scene, &Plane::ALL, &Silent, &|| restarts.set(9));
             assert_eq!(again.map(|(_, used)| used), Ok(Used::Cpu));
         }
         Some((result, restarts.get()))

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use std::thread;
 use std::time::{Duration, Instant};
-use zeroset_scene::film::Film;
+use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::render::{Observer, RenderError};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::Antialias;
@@ -29,7 +29,7 @@ pub(crate) struct Cost {
     pub threads: usize,
     /// Time of the picture.
     pub seconds: f64,
-    /// Memory of the picture, apart from the scene.
+    /// Memory of the picture as a PNG, apart from the scene.
     pub bytes: u64,
     /// Whether not even the smallest picture was done in time: it costs more than this.
     pub is_least: bool,
@@ -55,7 +55,9 @@ pub(crate) fn cost(scene: &Scene) -> Result<Cost, RenderError> {
         Antialias::Supersample { samples, .. } => samples.max(1),
     };
     let renderer = CpuRenderer::new(Some(1))?;
-    let bytes = renderer.memory(scene);
+    // beside the film, the picture that becomes a PNG is as large as its colour plane
+    let pixels = u64::from(size[0]) * u64::from(size[1]);
+    let bytes = renderer.memory(scene, &[Plane::Colour]) + 12 * pixels;
     let mut plain = scene.clone();
     plain.settings.antialias = Antialias::None;
     let picture = renderer.prepare(&plain)?;
@@ -199,7 +201,7 @@ mod tests {
                 (0.6..1.7).contains(&(found / right)),
                 "{text}: {found}, right {right}"
             );
-            assert!(estimate.bytes >= 64 * u64::from(width * height));
+            assert!(estimate.bytes >= 24 * u64::from(width * height));
         }
     }
 

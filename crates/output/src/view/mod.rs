@@ -33,6 +33,15 @@ pub struct View<'a> {
     pub objects: &'a [String],
 }
 
+/// The planes that a film needs for a view of one of them.
+pub fn needed(plane: Plane) -> Vec<Plane> {
+    match plane {
+        // where nothing is hit, there is no residual
+        Plane::Residual => vec![plane, Plane::Depth],
+        plane => vec![plane],
+    }
+}
+
 impl View<'_> {
     /// Shows a film's plane; of a film that does not have it, [`NOTHING`].
     pub fn of(&self, film: &Film) -> Picture {

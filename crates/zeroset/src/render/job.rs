@@ -16,7 +16,7 @@ use std::time::Duration;
 use zeroset_output::atomic::probe;
 use zeroset_output::format::png::Depth;
 use zeroset_output::format::{Notes, exr, png};
-use zeroset_output::view::View;
+use zeroset_output::view::{View, needed};
 use zeroset_scene::film::Plane;
 use zeroset_scene::load::{Loaded, Options};
 use zeroset_scene::render::Frame;
@@ -88,6 +88,10 @@ impl<'a> Job<'a> {
             label = format!("{label} {}/{}", number - frames.start + 1, frames.len());
         }
         probe(&path)?;
+        let planes = &match Container::of(&path)? {
+            Container::Exr => Plane::ALL.to_vec(),
+            Container::Png => needed(self.args.view),
+        };
         let progress = Progress {
             bar: self.console.bar(&label),
             cancelled,
@@ -96,13 +100,13 @@ impl<'a> Job<'a> {
         let rendered = match self.args.time_limit {
             None => self
                 .engine
-                .render(&scene, &progress, &restart)
+                .render(&scene, planes, &progress, &restart)
                 .map(|(frame, used)| (frame, used, None))
                 .map_err(Failure::from),
             Some(seconds) => {
                 // beyond some years a limit is none
                 let most = Duration::from_secs_f64(seconds.min(1e9));
-                limited::render(&self.engine, &scene, most, &progress, &restart)
+                limited::render(&self.engine, &scene, planes, most, &progress, &restart)
             }
         };
         progress.bar.finish_and_clear();

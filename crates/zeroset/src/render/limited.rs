@@ -32,7 +32,8 @@ pub(crate) struct Lack {
 impl Lack {
     /// For a person.
     pub(crate) fn words(&self) -> String {
-        let (percent, [width, height]) = (100.0 * self.finished, self.rest.size);
+        // what is not finished is never rounded away
+        let (percent, [width, height]) = ((100.0 * self.finished).floor(), self.rest.size);
         let rest = if self.rest.size != self.wanted.size {
             format!("is from a picture of {width}x{height}")
         } else {
@@ -114,6 +115,7 @@ impl Observer for Deadline<'_> {
 pub(crate) fn render(
     engine: &Engine<'_>,
     scene: &Scene,
+    planes: &[Plane],
     limit: Duration,
     progress: &Progress<'_>,
     restart: &dyn Fn(),
@@ -134,7 +136,7 @@ pub(crate) fn render(
         let mut scene = scene.clone();
         (scene.settings.size, scene.settings.antialias) = (rung.size, rung.antialias);
         progress.bar.reset();
-        let part = match engine.render_part(&scene, &deadline, restart) {
+        let part = match engine.render_part(&scene, planes, &deadline, restart) {
             Ok(part) => part,
             // a renderer that keeps no part of a picture
             Err(RenderError::Cancelled) if !progress.is_cancelled() => None,
@@ -211,11 +213,17 @@ fn enlarged(film: Film, [width, height]: [u32; 2]) -> Film {
     if [film.width(), film.height()] == [width, height] {
         return film;
     }
-    let mut out = Film::new(width, height);
+    let held = Plane::ALL.map(|plane| (plane, film.has(plane)));
+    let held: Vec<Plane> = held
+        .iter()
+        .filter(|(_, has)| *has)
+        .map(|(plane, _)| *plane)
+        .collect();
+    let mut out = Film::with(width, height, &held);
     let nearest = |at: u32, to: u32, from: u32| {
         ((2 * u64::from(at) + 1) * u64::from(from) / (2 * u64::from(to))) as usize
     };
-    for plane in Plane::ALL {
+    for plane in held {
         let (from, channels) = (film.plane(plane), plane.channels());
         let rows = out
             .plane_mut(plane)
@@ -234,7 +242,7 @@ fn enlarged(film: Film, [width, height]: [u32; 2]) -> Film {
 /// Copies a tile from one film to another of the same size.
 fn lay(from: &Film, to: &mut Film, [x, y, width, height]: [u32; 4]) {
     let line = from.width() as usize;
-    for plane in Plane::ALL {
+    for plane in Plane::ALL.into_iter().filter(|plane| from.has(*plane)) {
         let channels = plane.channels();
         for row in y..y + height {
             let at = (row as usize * line + x as usize) * channels;

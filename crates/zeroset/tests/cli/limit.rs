@@ -111,7 +111,7 @@ fn check_says_what_a_picture_costs() {
         "{found}, right {right}"
     );
     assert!(
-        cost["seconds"].as_f64().unwrap() > 0.0 && cost["bytes"].as_u64().unwrap() > 200 * 150 * 64
+        cost["seconds"].as_f64().unwrap() > 0.0 && cost["bytes"].as_u64().unwrap() > 200 * 150 * 24
     );
     assert_eq!(
         (&cost["rays_per_pixel"], &cost["is_least"]),
