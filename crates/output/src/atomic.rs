@@ -5,7 +5,8 @@
 //! survives a power cut. Whoever reads the target sees all of the old file or all of the new one. The process may be
 //! killed at any moment.
 
-use std::fs::{self, File, Permissions};
+use crate::format::Cancelled;
+use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -47,6 +48,9 @@ pub enum WriteFailure {
     /// The folder that was to hold the file does not exist.
     #[error("the folder {} does not exist", .0.display())]
     NoFolder(PathBuf),
+    /// Whoever wanted the file does not want it any more.
+    #[error("it was cancelled")]
+    Cancelled,
     /// What the system said.
     #[error("{0}")]
     System(#[source] io::Error),
@@ -61,7 +65,15 @@ impl WriteError {
     }
 
     fn system(path: &Path) -> impl Fn(io::Error) -> Self {
-        move |error| WriteError::new(path, WriteFailure::System(error))
+        move |error| {
+            let is_cancelled = error.get_ref().is_some_and(|e| e.is::<Cancelled>());
+            let failure = if is_cancelled {
+                WriteFailure::Cancelled
+            } else {
+                WriteFailure::System(error)
+            };
+            WriteError::new(path, failure)
+        }
     }
 
     /// What the user can do about it.
@@ -72,6 +84,7 @@ impl WriteError {
             WriteFailure::Protected => "choose another name, or make the file writable",
             WriteFailure::Exists => "choose another name, or remove what is there",
             WriteFailure::NoFolder(_) => "create the folder, or choose another one",
+            WriteFailure::Cancelled => "ask for it again",
             WriteFailure::System(error) => match error.kind() {
                 io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
                     "free some space, or choose another disk"
@@ -230,29 +243,27 @@ impl Target {
 
     /// An unfinished file, held by a lock, that goes away when it is dropped.
     fn begin(&self, path: &Path) -> Result<NamedTempFile, WriteError> {
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(PREFIX).suffix(SUFFIX).rand_bytes(10);
-        #[cfg(unix)]
-        builder.permissions(<Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0o666));
-        let unfinished = builder
-            .tempfile_in(&self.folder)
-            .map_err(|error| WriteError::new(path, WriteFailure::System(without_path(error))))?;
+        // what the system says, which does not name the unfinished file: that is no news to anybody
+        let mut said = None;
+        let mut options = OpenOptions::new();
+        options.read(true).write(true).create_new(true);
+        let unfinished = tempfile::Builder::new()
+            .prefix(PREFIX)
+            .suffix(SUFFIX)
+            .rand_bytes(10)
+            .make_in(&self.folder, |name| {
+                options.open(name).inspect_err(|error| {
+                    said = error.raw_os_error().map(io::Error::from_raw_os_error);
+                })
+            })
+            .map_err(|error| {
+                let said = said.unwrap_or_else(|| error.kind().into());
+                WriteError::new(path, WriteFailure::System(said))
+            })?;
         // Without a lock (some network disks have none) the file may count as abandoned after a minute of silence: the
         // rename then fails and says so.
         let _ = unfinished.as_file().try_lock();
         Ok(unfinished)
-    }
-}
-
-/// What the system said, without the random name of the unfinished file, which is no news to anybody.
-fn without_path(error: io::Error) -> io::Error {
-    let inner = error
-        .get_ref()
-        .and_then(|e| e.source())
-        .and_then(|e| e.downcast_ref::<io::Error>());
-    match inner.and_then(io::Error::raw_os_error) {
-        Some(number) => io::Error::from_raw_os_error(number),
-        None => error,
     }
 }
 

@@ -271,6 +271,10 @@ mod unix {
             said.contains("FAILED") && said.contains("choose a folder that you may write to"),
             "{said}"
         );
+        assert!(
+            said.contains("a.png") && !said.contains(".partial"),
+            "{said}"
+        );
         assert_eq!(fs::read(&path).unwrap(), b"old");
         assert_eq!(names(folder.path()), ["a.png"]);
     }

@@ -404,3 +404,63 @@ proptest! {
         prop_assert!(picture.pixels().as_flattened().iter().all(|c| (0.0..=1.0).contains(c)));
     }
 }
+
+/// Counts pixels, and wants no more after so many of them.
+struct Watcher {
+    done: std::sync::atomic::AtomicU64,
+    most: u64,
+}
+
+impl zeroset_scene::render::Observer for Watcher {
+    fn advance(&self, done: u64, total: u64) {
+        let before = self
+            .done
+            .fetch_add(done, std::sync::atomic::Ordering::Relaxed);
+        assert!(before + done <= total);
+    }
+    fn is_cancelled(&self) -> bool {
+        self.done.load(std::sync::atomic::Ordering::Relaxed) >= self.most
+    }
+}
+
+#[test]
+fn files_tell_how_far_they_are_and_end_when_they_are_not_wanted() {
+    use std::sync::atomic::AtomicU64;
+    use zeroset_output::atomic::{WriteFailure, write_atomically};
+    let film = film(300, 200);
+    let picture = Picture::develop(&film, 0.0);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a");
+    let total = 300 * 200;
+    for most in [0, 1, 20_000, 59_000, u64::MAX] {
+        for name in ["png", "exr"] {
+            std::fs::write(&path, "old").unwrap();
+            let watcher = Watcher {
+                done: AtomicU64::new(0),
+                most,
+            };
+            let notes = Notes::default();
+            let written = write_atomically(&path, |writer| match name {
+                "png" => png::write_watched(writer, &picture, Depth::Sixteen, &notes, &watcher),
+                _ => exr::write_watched(writer, &film, &notes, &watcher),
+            });
+            let done = watcher.done.into_inner();
+            if most > total {
+                written.unwrap();
+                assert_eq!(done, total, "{name}");
+            } else {
+                let failure = written.unwrap_err().failure;
+                assert!(
+                    matches!(failure, WriteFailure::Cancelled),
+                    "{name}: {failure}"
+                );
+                assert_eq!(std::fs::read(&path).unwrap(), b"old", "{name}");
+            }
+            assert_eq!(
+                std::fs::read_dir(folder.path()).unwrap().count(),
+                1,
+                "{name}"
+            );
+        }
+    }
+}

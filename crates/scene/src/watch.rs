@@ -6,12 +6,14 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::thread;
-use std::time::{Duration, SystemTime};
+use std::time::{Duration, Instant, SystemTime};
 
 /// A good time between two looks.
 pub const PAUSE: Duration = Duration::from_millis(100);
 /// How long all files must stay as they are before a change counts: some editors write in several steps.
 const SETTLED: Duration = Duration::from_millis(50);
+/// How long is waited for that at most: some programs never stop writing.
+const LONGEST: Duration = Duration::from_millis(500);
 
 /// What a file looked like; `None` where there is none.
 type Stamp = Option<(SystemTime, u64, u64)>;
@@ -61,11 +63,16 @@ impl Watched {
         self.0.iter().any(|(path, before)| stamp(path) != *before)
     }
 
-    /// The same files as they look now, once they stay so; this waits for it.
+    /// The same files as they look now, once they stay so. This waits for it, half a second at most: files that never rest
+    /// are given as they look then.
     #[must_use]
     pub fn settled(&self) -> Watched {
+        let began = Instant::now();
         loop {
             let now = Watched::of(self.0.iter().map(|(path, _)| path.clone()));
+            if began.elapsed() >= LONGEST {
+                return now;
+            }
             thread::sleep(SETTLED);
             if !now.changed() {
                 return now;
@@ -76,5 +83,42 @@ impl Watched {
     /// The files.
     pub fn files(&self) -> impl ExactSizeIterator<Item = &Path> {
         self.0.iter().map(|(path, _)| path.as_path())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicBool, Ordering};
+
+    #[test]
+    fn files_that_never_rest_are_not_waited_for_for_ever() {
+        let folder = std::env::temp_dir().join(format!("zeroset-watch-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let path = folder.join("a.star");
+        fs::write(&path, "0").unwrap();
+        let ended = AtomicBool::new(false);
+        let elapsed = thread::scope(|scope| {
+            scope.spawn(|| {
+                let mut text = String::new();
+                while !ended.load(Ordering::Relaxed) {
+                    // another length each time: the clock of a file system is coarse
+                    text.push('x');
+                    fs::write(&path, &text).unwrap();
+                    thread::sleep(Duration::from_millis(5));
+                }
+            });
+            let began = Instant::now();
+            let _ = Watched::of([path.clone()]).settled();
+            let elapsed = began.elapsed();
+            ended.store(true, Ordering::Relaxed);
+            elapsed
+        });
+        fs::remove_dir_all(&folder).unwrap();
+        // one that rests is told at once
+        assert!(
+            elapsed >= LONGEST && elapsed < Duration::from_secs(20),
+            "{elapsed:?}"
+        );
     }
 }

@@ -94,7 +94,7 @@ pub(crate) fn stream<S: Simd, P: Penumbra<S>, A: Aim<S>>(
                     start(s, penumbra, aim, solid, next..range.end, iteration, q);
                     next += S::f32s::LEN;
                 }
-                if q.beams.count == 0 {
+                if q.beams.count == 0 || solid.stop.before(q.beams.count) {
                     break;
                 }
                 sample(s, aim, solid, q);

@@ -10,6 +10,7 @@ use crate::sampling::{point, scramble};
 use crate::shade::{Substance, arrival, colour, sky};
 use crate::shadow::{shadows, towards};
 use crate::simd::{INSIDE, constant, load, load3, splat, store, store3};
+use crate::stop::Stop;
 use crate::tile::{Area, HEIGHT, Hits, Scratch, Solid, WIDTH};
 use crate::{ao, cone, resolve};
 use fearless_simd::{Simd, prelude::*};
@@ -85,6 +86,7 @@ impl<'a> Job<'a> {
         area: &Area,
         sums: &mut [f32],
         q: &mut Scratch,
+        stop: &Stop<'_>,
     ) -> Done {
         let solid = Solid::new(
             &self.picture.program,
@@ -92,10 +94,14 @@ impl<'a> Job<'a> {
             &self.view,
             self.picture.scene.settings.max_steps,
             self.samples(),
+            stop,
         );
         q.planes.clear();
         let mut hits = 0;
         for index in 0..self.samples() {
+            if stop.is_set() {
+                break;
+            }
             self.aim(area, index, q);
             self.trace(s, &solid, area, index, q);
             hits += q.hits.count as u64;
@@ -109,6 +115,7 @@ impl<'a> Job<'a> {
             rays,
             hits,
             evaluations: q.counts,
+            spent: stop.evaluations(),
         }
     }
 
@@ -239,6 +246,9 @@ impl<'a> Job<'a> {
             .chain([&mut q.hits.shadow, &mut q.hits.shares])
             .for_each(|c| c[..count].fill(0.0));
         for light in &self.picture.scene.lights {
+            if solid.stop.is_set() {
+                break;
+            }
             shadows(s, solid, light, q);
             let only = self
                 .picture
@@ -549,6 +559,9 @@ impl Hits {
 fn marks<S: Simd>(s: S, solid: &Solid<'_>, q: &mut Scratch) {
     for k in (0..q.hits.count).step_by(BATCH) {
         let n = (q.hits.count - k).min(BATCH);
+        if solid.stop.before(n) {
+            break;
+        }
         for (column, x) in q.work.points_mut().iter_mut().zip(&q.hits.point) {
             column.0[..n].copy_from_slice(&x[k..k + n]);
         }

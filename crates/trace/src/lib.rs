@@ -20,6 +20,7 @@ mod sampling;
 mod shade;
 mod shadow;
 mod simd;
+mod stop;
 mod tile;
 
-pub use renderer::{CpuRenderer, Picture, sums};
+pub use renderer::{CpuRenderer, Part, Picture, sums};

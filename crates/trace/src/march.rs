@@ -145,7 +145,7 @@ pub(crate) fn stream<S: Simd, M: Marcher>(
                     begin(s, marcher, source, spans, next..count, iteration, rays);
                     next += S::f32s::LEN;
                 }
-                if rays.count == 0 {
+                if rays.count == 0 || how.solid.stop.before(rays.count) {
                     break;
                 }
                 sample(s, how.solid, rays, work);

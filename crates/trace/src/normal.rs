@@ -40,6 +40,9 @@ pub(crate) fn place<S: Simd>(
                     refine(s, solid, refinements, k, n, q);
                 }
                 for _ in 0..rounds {
+                    if solid.stop.is_set() {
+                        break;
+                    }
                     values_at(
                         s,
                         solid,
@@ -158,7 +161,8 @@ fn refine<S: Simd>(s: S, solid: &Solid<'_>, rounds: u32, k: usize, n: usize, q: 
     }
 }
 
-/// Evaluates the field at `n` points that are made by vectors.
+/// Evaluates the field at `n` points that are made by vectors. (Where it is time to stop, nothing is evaluated: nobody looks
+/// at what comes of it.)
 #[inline(always)]
 pub(crate) fn values_at<S: Simd>(
     s: S,
@@ -167,6 +171,9 @@ pub(crate) fn values_at<S: Simd>(
     work: &mut Workspace,
     point: impl Fn(usize) -> Vec3<Lanes<S>>,
 ) {
+    if solid.stop.before(n) {
+        return;
+    }
     fill(n, work, point);
     eval::values(s, solid.program, work, n);
 }
@@ -182,6 +189,9 @@ pub(crate) fn sample<S: Simd>(
     work: &mut Workspace,
     point: impl Fn(usize) -> Vec3<Lanes<S>>,
 ) {
+    if solid.stop.before(n) {
+        return;
+    }
     fill(n, work, point);
     if solid.close {
         eval::values(s, solid.program, work, n);
@@ -326,6 +336,9 @@ fn by_gradients<S: Simd>(s: S, solid: &Solid<'_>, q: &mut Scratch) {
                 for attempt in 0..2 {
                     // what is seen faces the eye: on an edge the gradient may be that of the face behind it, and that of the one
                     // before it is found a little nearer
+                    if solid.stop.before(n) {
+                        break;
+                    }
                     let hits = &q.hits;
                     fill(
                         n,

@@ -180,7 +180,11 @@ fn search(plan: &Plan, how: &Stream<'_>, area: &Area, q: &mut Scratch) {
         } else {
             Crossing::Unknown(t)
         };
-        q.counts.march += isolation.take_evaluations();
+        let spent = isolation.take_evaluations();
+        q.counts.march += spent;
+        if solid.stop.before(spent as usize) {
+            break;
+        }
         let t = match found {
             Crossing::None => continue,
             Crossing::At(t) => t,

@@ -2,6 +2,7 @@
 
 use crate::job::Job;
 use crate::resolve::{self, ACCUMULATORS};
+use crate::stop::Stop;
 use crate::tile::{Area, HEIGHT, Scratch, WIDTH};
 use fearless_simd::{Level, dispatch};
 use rayon::ThreadPool;
@@ -18,7 +19,7 @@ use zeroset_scene::film::{Film, Plane, SUMS};
 use zeroset_scene::material::Pattern;
 use zeroset_scene::render::{Evaluations, Frame, Observer, RenderError, Renderer, Statistics};
 use zeroset_scene::scene::Scene;
-use zeroset_scene::settings::Occlusion;
+use zeroset_scene::settings::{Antialias, Occlusion};
 use zeroset_scene::view::Region;
 
 /// The CPU's renderer: sphere tracing in SIMD streams, over all threads that it is given.
@@ -92,20 +93,59 @@ impl CpuRenderer {
         film: &mut Film,
         observer: &dyn Observer,
     ) -> Result<Statistics, RenderError> {
+        let part = self.render_part(picture, film, observer);
+        if part.is_whole {
+            Ok(part.statistics)
+        } else {
+            Err(RenderError::Cancelled)
+        }
+    }
+
+    /// As [`CpuRenderer::render_into`]. Where the observer ends it, the film holds the tiles that were finished by then, and
+    /// anything in all other places.
+    pub fn render_part(
+        &self,
+        picture: &Picture<'_>,
+        film: &mut Film,
+        observer: &dyn Observer,
+    ) -> Part {
         let began = Instant::now();
+        let size = [film.width(), film.height()];
         let run = Run {
             sums: self.sums,
             ..Run::new(picture, film, self.level, observer)
         };
-        let statistics = self.pool.install(|| run.all(film));
-        if run.cancelled.into_inner() {
-            return Err(RenderError::Cancelled);
+        let done = self.pool.install(|| run.all(film));
+        let finished = run.finished.into_inner();
+        let mut finished = finished.unwrap_or_else(PoisonError::into_inner);
+        finished.sort_unstable();
+        let area = |k: &usize| {
+            let area = Area::of(*k, size);
+            [area.x, area.y, area.width, area.height].map(|n| n as u32)
+        };
+        Part {
+            statistics: Statistics {
+                rays: done.rays,
+                hits: done.hits,
+                evaluations: done.evaluations,
+                seconds: began.elapsed().as_secs_f64(),
+                threads: self.threads(),
+            },
+            is_whole: finished.len() == Area::count(size),
+            finished: finished.iter().map(area).collect(),
+            spent: done.spent,
         }
-        Ok(Statistics {
-            seconds: began.elapsed().as_secs_f64(),
-            threads: self.threads(),
-            ..statistics
-        })
+    }
+
+    /// Bytes that a picture of the scene takes while these planes are rendered, apart from the scene itself.
+    pub fn memory(&self, scene: &Scene, planes: &[Plane]) -> u64 {
+        let [width, height] = scene.settings.size;
+        let numbers: usize = planes.iter().map(|p| p.channels()).sum();
+        let sums = match scene.settings.antialias {
+            Antialias::None => 0,
+            Antialias::Supersample { .. } => sums([width, height]),
+        };
+        4 * u64::from(width) * u64::from(height) * numbers as u64 + sums
     }
 }
 
@@ -126,6 +166,19 @@ impl Renderer for CpuRenderer {
         let statistics = self.render_into(&picture, &mut film, observer)?;
         Ok(Frame { film, statistics })
     }
+}
+
+/// As much of a picture as there was time for.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// What the finished tiles took.
+    pub statistics: Statistics,
+    /// Whether all of it is finished.
+    pub is_whole: bool,
+    /// The tiles that are finished: left edge, upper edge, width, height.
+    pub finished: Vec<[u32; 4]>,
+    /// Evaluations of the field, those of unfinished tiles included.
+    pub spent: u64,
 }
 
 /// A scene that is ready to be rendered.
@@ -224,6 +277,8 @@ struct Run<'a> {
     cancelled: AtomicBool,
     /// Bytes of sums at a time.
     sums: u64,
+    /// Numbers of the tiles that are finished.
+    finished: Mutex<Vec<usize>>,
 }
 
 impl<'a> Run<'a> {
@@ -243,10 +298,11 @@ impl<'a> Run<'a> {
             observer,
             cancelled,
             sums: SUMS,
+            finished: Mutex::default(),
         }
     }
 
-    fn all(&self, film: &mut Film) -> Statistics {
+    fn all(&self, film: &mut Film) -> Done {
         let mut bands = bands(film);
         let done: Done = if self.job.is_filtered() {
             self.filtered(&mut bands)
@@ -256,13 +312,7 @@ impl<'a> Run<'a> {
                 .map(|k| self.tile(k, &mut [], &bands))
                 .sum()
         };
-        let (rays, hits, evaluations) = (done.rays, done.hits, done.evaluations);
-        Statistics {
-            rays,
-            hits,
-            evaluations,
-            ..Statistics::default()
-        }
+        done
     }
 
     /// Renders all tiles, some rows of them at a time so that their sums take limited memory, and filters what is complete.
@@ -305,8 +355,9 @@ impl<'a> Run<'a> {
 
     /// Renders tile number `k`.
     fn tile(&self, k: usize, sums: &mut [f32], bands: &[Band<'_>]) -> Done {
-        if self.cancelled.load(Ordering::Relaxed) || self.observer.is_cancelled() {
-            self.cancelled.store(true, Ordering::Relaxed);
+        let instructions = self.picture.program.structure().values.instructions.len();
+        let stop = Stop::new(self.observer, &self.cancelled, instructions);
+        if stop.is_set() {
             return Done::default();
         }
         let area = Area::of(k, self.size);
@@ -314,12 +365,23 @@ impl<'a> Run<'a> {
         let scratch = spare.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let mut q = scratch.unwrap_or_else(|| Box::new(Scratch::new(self.picture.program())));
         q.counts = Evaluations::default();
-        let done = dispatch!(self.level, s => self.job.tile(s, &area, sums, &mut q));
+        let done = dispatch!(self.level, s => self.job.tile(s, &area, sums, &mut q, &stop));
+        if stop.is_set() {
+            // another thread may have set it after the last sample: then the tile is lost, which does no harm
+            return Done {
+                spent: done.spent,
+                ..Done::default()
+            };
+        }
         let band = &mut *bands[area.y / HEIGHT]
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
         self.job.deliver(&area, self.size, &q, band);
         spare.lock().unwrap_or_else(PoisonError::into_inner).push(q);
+        self.finished
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .push(k);
         let total =
             u64::from(self.size[0]) * u64::from(self.size[1]) * u64::from(self.job.samples());
         self.observer.advance(done.rays, total);
@@ -349,6 +411,8 @@ pub(crate) struct Done {
     pub(crate) rays: u64,
     pub(crate) hits: u64,
     pub(crate) evaluations: Evaluations,
+    /// Evaluations of all stages, those of unfinished tiles included.
+    pub(crate) spent: u64,
 }
 
 impl std::iter::Sum for Done {
@@ -357,6 +421,7 @@ impl std::iter::Sum for Done {
             rays: a.rays + b.rays,
             hits: a.hits + b.hits,
             evaluations: a.evaluations.plus(&b.evaluations),
+            spent: a.spent + b.spent,
         })
     }
 }
@@ -374,3 +439,6 @@ fn bands(film: &mut Film) -> Vec<Band<'_>> {
     }
     bands.into_iter().map(Mutex::new).collect()
 }
+
+#[cfg(test)]
+mod tests;

@@ -3,6 +3,7 @@
 use crate::march::ITERATIONS;
 use crate::planes::Planes;
 use crate::simd::{Row, SLACK, Sheet, TILE_RAYS, WordRow, WordSheet};
+use crate::stop::Stop;
 use zeroset_field::eval::Workspace;
 use zeroset_field::program::Program;
 use zeroset_scene::render::Evaluations;
@@ -58,6 +59,8 @@ pub(crate) struct Solid<'a> {
     pub(crate) close: bool,
     /// Rays a pixel: each stands for less of it.
     pub(crate) samples: u32,
+    /// Whether to stop.
+    pub(crate) stop: &'a Stop<'a>,
 }
 
 impl<'a> Solid<'a> {
@@ -68,6 +71,7 @@ impl<'a> Solid<'a> {
         view: &'a View,
         max_steps: u32,
         samples: u32,
+        stop: &'a Stop<'a>,
     ) -> Solid<'a> {
         Solid {
             program,
@@ -77,6 +81,7 @@ impl<'a> Solid<'a> {
             fractal: program.is_fractal(),
             close: program.is_close(),
             samples,
+            stop,
         }
     }
 }

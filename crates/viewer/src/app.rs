@@ -18,6 +18,7 @@ use eframe::egui::{
 };
 use glam::DVec3;
 use std::time::{Duration, Instant};
+use zeroset_output::display::{LINE, NAME, name};
 use zeroset_scene::film::Plane;
 
 /// How long a note is shown.
@@ -188,8 +189,8 @@ impl App {
                 .file_name()
                 .unwrap_or_default()
                 .to_string_lossy();
-            ui.label(RichText::new(file).small().weak())
-                .on_hover_text(self.session.path.display().to_string());
+            ui.label(RichText::new(name(&file, NAME)).small().weak())
+                .on_hover_text(name(&self.session.path.to_string_lossy(), LINE));
             // at the right side, and yet from left to right, which is the order of the Tab key
             let id = Id::unique("width of the buttons");
             let width = ui.data(|d| d.get_temp(id)).unwrap_or(0.0);
@@ -407,7 +408,7 @@ impl App {
     }
 
     fn tell(&mut self, text: impl Into<String>) {
-        self.note = Some((text.into(), Instant::now()));
+        self.note = Some((name(&text.into(), LINE), Instant::now()));
     }
 
     /// Shows a note for a while.

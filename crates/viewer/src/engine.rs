@@ -4,11 +4,12 @@ use crate::develop::develop;
 use crate::ladder::{self, Rung, rungs};
 use crate::slice::{Cut, Slice};
 use eframe::egui::ColorImage;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use zeroset_output::view::section::Section;
 use zeroset_output::view::{Key, View};
 use zeroset_scene::camera::Camera;
@@ -18,6 +19,10 @@ use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Settings, Shadow};
 use zeroset_trace::CpuRenderer;
 
+/// Stack of the thread: a field is compiled as deep as it nests, which a flag may allow to be deep.
+const STACK: usize = 64 << 20;
+/// What is said when the renderer itself is wrong.
+const BROKEN: &str = "the renderer broke down; please report this scene as a bug";
 /// Numbers beside a bar of colours.
 const TICKS: usize = 6;
 
@@ -91,6 +96,8 @@ pub struct Request {
     pub refine: bool,
     /// A section through the field.
     pub slice: Option<Slice>,
+    /// How often the file was saved before: a picture of another edition is of no use to anybody.
+    pub edition: u64,
 }
 
 impl PartialEq for Request {
@@ -210,6 +217,7 @@ impl Engine {
         let theirs = Arc::clone(&shared);
         let thread = std::thread::Builder::new()
             .name("engine".into())
+            .stack_size(STACK)
             .spawn(move || Worker::run(&theirs, make, &tell, &wake))?;
         Ok(Engine {
             shared,
@@ -258,19 +266,39 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// How long the first picture may take when another one is wanted already.
+const FIRST: Duration = Duration::from_secs(1);
+
 /// Ends a rendering when something newer is wanted.
 struct Impatient<'a> {
     shared: &'a Shared,
-    /// The request that is being rendered; `None` where the picture is wanted whatever comes.
-    number: Option<u64>,
+    /// The request that is being rendered, and its number.
+    request: &'a Request,
+    number: u64,
+    /// Whether it is the first picture of the request, which is finished unless that takes long: otherwise a camera that
+    /// moves, or a slider, would show none.
+    is_first: bool,
+    began: Instant,
 }
 
 impl Observer for Impatient<'_> {
     fn advance(&self, _rays: u64, _total: u64) {}
 
     fn is_cancelled(&self) -> bool {
-        let is_old = |n| self.shared.newest.load(Ordering::Relaxed) != n;
-        self.shared.ended.load(Ordering::Relaxed) || self.number.is_some_and(is_old)
+        if self.shared.ended.load(Ordering::Relaxed) {
+            return true;
+        }
+        if self.shared.newest.load(Ordering::Relaxed) == self.number {
+            return false;
+        }
+        // a file that was saved is taken at once: it may mend what takes so long
+        let is_saved = |newer: &Request| newer.edition != self.request.edition;
+        !self.is_first
+            || self.began.elapsed() > FIRST
+            || lock(&self.shared.wanted)
+                .request
+                .as_ref()
+                .is_some_and(is_saved)
     }
 }
 
@@ -387,24 +415,35 @@ impl Worker<'_> {
             let number = self.shared.newest.load(Ordering::Relaxed);
             drop(wanted);
             let request = Arc::new(request);
-            let mut result = self.climb(Arc::clone(&request), number);
-            if let Err(RenderError::Device { reason, .. }) = &result {
-                let reason = reason.clone();
-                result = self
-                    .fall_back(reason)
-                    .and_then(|()| self.climb(request, number));
+            // a fault of this program costs a picture, not the window
+            let work = || self.serve_one(request, number);
+            match catch_unwind(AssertUnwindSafe(work)) {
+                Ok(Ok(()) | Err(RenderError::Cancelled)) => {}
+                Ok(Err(error)) => self.say(Event::Failed(error.to_string())),
+                Err(_) => {
+                    self.say(Event::Failed(BROKEN.to_owned()));
+                    if self.fall_back(BROKEN.to_owned()).is_err() {
+                        return;
+                    }
+                }
             }
-            match result {
-                Ok(()) | Err(RenderError::Cancelled) => {}
-                Err(error) => self.say(Event::Failed(error.to_string())),
+        }
+    }
+
+    fn serve_one(&mut self, request: Arc<Request>, number: u64) -> Result<(), RenderError> {
+        match self.climb(Arc::clone(&request), number) {
+            Err(RenderError::Device { reason, .. }) => {
+                self.fall_back(reason)?;
+                self.climb(request, number)
             }
+            result => result,
         }
     }
 
     /// Goes on with the CPU when the device that rendered is no more.
     fn fall_back(&mut self, reason: String) -> Result<(), RenderError> {
         self.backend = Backend::cpu(None)?;
-        (self.rate, self.kept) = (None, Kept::default());
+        (self.rate, self.kept, self.cut) = (None, Kept::default(), Cut::default());
         self.say(Event::Ready(self.backend.name.clone()));
         self.say(Event::FellBack(reason));
         Ok(())
@@ -442,11 +481,12 @@ impl Worker<'_> {
         rungs.drain(..first);
         let count = rungs.len();
         for (i, rung) in (1..).zip(rungs) {
-            // the first picture is always finished: otherwise a camera that moves would show none
-            let number = (i > 1).then_some(number);
             let observer = Impatient {
                 shared: self.shared,
+                request: &request,
                 number,
+                is_first: i == 1,
+                began: Instant::now(),
             };
             let films = self.render(&request, &rung, &observer)?;
             self.show(&request, &films, i == count);

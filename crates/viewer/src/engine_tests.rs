@@ -22,6 +22,7 @@ fn request(text: &str, size: [u32; 2]) -> Request {
         plane: Plane::Colour,
     };
     Request {
+        edition: 0,
         camera: scene.camera,
         size,
         looks: vec![look],
@@ -286,4 +287,78 @@ fn a_window_that_closes_waits_for_nothing() {
     picture(&engine);
     // the refined picture would never end
     drop(engine);
+}
+
+/// Takes hours for a scene whose first object is called so, and asks; breaks down at another one.
+struct Moody;
+
+impl Renderer for Moody {
+    fn render(&self, scene: &Scene, observer: &dyn Observer) -> Result<Frame, RenderError> {
+        let name = scene.objects.first().map_or("", |o| o.name.as_str());
+        assert!(name != "bad", "planted");
+        while name == "slow" {
+            if observer.is_cancelled() {
+                return Err(RenderError::Cancelled);
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        let [width, height] = scene.settings.size;
+        let (film, statistics) = (Film::new(width, height), Statistics::default());
+        Ok(Frame { film, statistics })
+    }
+}
+
+const NAMED: &str = "show(sphere(), name = \"NAME\")\nrender(aa = none())\n";
+
+fn named(name: &str, edition: u64) -> Request {
+    Request {
+        edition,
+        ..request(&NAMED.replace("NAME", name), [8, 8])
+    }
+}
+
+#[test]
+fn a_saved_file_ends_even_the_first_picture_at_once() {
+    let engine = started(Moody);
+    engine.ask(named("slow", 0));
+    std::thread::sleep(Duration::from_millis(50));
+    let began = Instant::now();
+    engine.ask(named("fast", 1));
+    assert_eq!(last(&engine).request.scene.objects[0].name, "fast");
+    assert!(
+        began.elapsed() < Duration::from_millis(900),
+        "{:?}",
+        began.elapsed()
+    );
+}
+
+#[test]
+fn a_first_picture_that_takes_long_makes_room_for_any_other() {
+    let engine = started(Moody);
+    engine.ask(named("slow", 0));
+    std::thread::sleep(Duration::from_millis(50));
+    // a slider that was moved: the file is the same
+    engine.ask(named("fast", 0));
+    assert_eq!(last(&engine).request.scene.objects[0].name, "fast");
+}
+
+#[test]
+fn a_renderer_that_breaks_down_takes_nothing_along() {
+    let engine = started(Moody);
+    for round in 0..2 {
+        engine.ask(named("bad", round));
+        if round == 0 {
+            assert!(
+                matches!(engine.wait(PATIENCE), Some(Event::Failed(said)) if said.contains("broke down"))
+            );
+            assert!(matches!(engine.wait(PATIENCE), Some(Event::Ready(_))));
+            assert!(matches!(engine.wait(PATIENCE), Some(Event::FellBack(_))));
+        } else {
+            // the CPU has no moods
+            last(&engine);
+        }
+        engine.ask(named("good", round));
+        assert_eq!(last(&engine).request.scene.objects[0].name, "good");
+        assert!(engine.is_alive());
+    }
 }

@@ -5,6 +5,7 @@ use crate::engine::MakeBackend;
 use crate::loader::Explain;
 use eframe::egui::{ViewportBuilder, vec2};
 use std::path::PathBuf;
+use zeroset_output::display::{NAME, name};
 use zeroset_scene::load::Options;
 
 /// What the window opens with.
@@ -57,7 +58,7 @@ impl OpenError {
 pub fn open(open: Open) -> Result<(), OpenError> {
     let title = (open.scene.file_name()).map_or_else(
         || "Zeroset".to_owned(),
-        |n| format!("{} - Zeroset", n.to_string_lossy()),
+        |n| format!("{} - Zeroset", name(&n.to_string_lossy(), NAME)),
     );
     let options = eframe::NativeOptions {
         viewport: ViewportBuilder::default()

@@ -1,10 +1,12 @@
 //! The thread that loads: the scene again for every change of time or of a slider, and whenever a file is saved.
 
 use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use zeroset_scene::load::{Control, Failed, Loaded, Options, Parameter, load};
+use zeroset_scene::report::Report;
 use zeroset_scene::watch::{PAUSE, Watched};
 
 /// What a person is told of a scene that cannot be loaded.
@@ -115,20 +117,32 @@ impl Watcher {
         }
     }
 
+    /// Loads the scene. A fault of this program is a mistake in this scene, and the next one is waited for.
+    fn attempt(&self, options: &Options) -> Result<Loaded, Failed> {
+        let work = || load(&self.path, options);
+        catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {
+            let said = "the scene loader broke down; please report this scene as a bug";
+            Err(Failed {
+                report: Box::new(Report::new(said)),
+                files: vec![self.path.clone()],
+            })
+        })
+    }
+
     fn load(&mut self, is_edit: bool) -> Outcome {
-        let mut result = load(&self.path, &self.options);
+        let mut result = self.attempt(&self.options);
         if is_edit && result.is_err() && !self.options.set.is_empty() {
             // a parameter that was moved may be gone from the file, or have another range
             let plain = Options {
                 set: BTreeMap::new(),
                 ..self.options.clone()
             };
-            if let Ok(loaded) = load(&self.path, &plain) {
+            if let Ok(loaded) = self.attempt(&plain) {
                 self.options.set.retain(|name, text| {
                     let parameter = loaded.parameters.iter().find(|p| p.name == *name);
                     parameter.is_some_and(|p| takes(p, text))
                 });
-                result = load(&self.path, &self.options);
+                result = self.attempt(&self.options);
             }
         }
         let files = match &result {

@@ -7,13 +7,14 @@ use zeroset_output::format::png::{self, Depth};
 use zeroset_output::format::{Notes, exr};
 use zeroset_output::view::View;
 use zeroset_scene::film::Plane;
+use zeroset_scene::naming::default_stem;
 
-/// The name of a picture that was given none.
+/// The name of a picture that was given none: from the file's name, whatever the scene calls itself.
 pub(crate) fn default_name(session: &Session) -> String {
-    let plane = session.looks[0].plane;
+    let (stem, plane) = (default_stem(&session.path), session.looks[0].plane);
     match plane {
-        Plane::Colour => format!("{}.png", session.name()),
-        _ => format!("{}-{}.png", session.name(), plane.name()),
+        Plane::Colour => format!("{stem}.png"),
+        _ => format!("{stem}-{}.png", plane.name()),
     }
 }
 

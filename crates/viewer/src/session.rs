@@ -8,10 +8,12 @@ use crate::rig::{Rig, widened};
 use crate::slice::Slice;
 use std::path::PathBuf;
 use std::sync::Arc;
+use zeroset_output::display::{NAME, name};
 use zeroset_output::view::Key;
 use zeroset_scene::camera::Camera;
 use zeroset_scene::film::Plane;
 use zeroset_scene::load::{Loaded, Options, Parameter, Setting};
+use zeroset_scene::naming::default_stem;
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::Settings;
 
@@ -68,6 +70,8 @@ pub struct Session {
     pub shown: Option<Box<Shown>>,
     /// What renders.
     pub backend: Option<String>,
+    /// How often the file was saved.
+    edition: u64,
     /// The settings that the file states.
     stated: Settings,
     /// The picture that was asked for last.
@@ -112,18 +116,17 @@ impl Session {
             picked: None,
             shown: None,
             backend: None,
+            edition: 0,
             stated,
             wanted: None,
         }
     }
 
-    /// The scene's name, or the file's as long as there is none.
+    /// The scene's name, or the file's as long as there is none, as it is shown.
     pub fn name(&self) -> String {
         match &self.current {
-            Some(current) => current.scene.name.clone(),
-            None => {
-                (self.path.file_stem()).map_or_else(String::new, |s| s.to_string_lossy().into())
-            }
+            Some(current) => name(&current.scene.name, NAME),
+            None => default_stem(&self.path),
         }
     }
 
@@ -164,6 +167,7 @@ impl Session {
     /// Takes what the loader gave.
     pub fn absorb(&mut self, outcome: Outcome) {
         if outcome.is_edit {
+            self.edition += 1;
             // parameters that the file no longer has are gone
             let kept = |name: &String| outcome.options.set.contains_key(name);
             let had = |name: &String| self.asked.set.contains_key(name);
@@ -235,6 +239,7 @@ impl Session {
         let current = self.current.as_ref()?;
         let count = if self.comparison.is_on { 2 } else { 1 };
         Some(Request {
+            edition: self.edition,
             scene: Arc::clone(&current.scene),
             camera: self.camera(size),
             size: size.map(|n| n.max(1)),

@@ -242,6 +242,7 @@ mod tests {
             .unwrap()
             .film;
         let request = Request {
+            edition: 0,
             camera: scene.camera,
             size: [200, 200],
             looks: vec![look],

@@ -59,7 +59,7 @@ pub(crate) enum Command {
     View(View),
     /// Render a scene to a picture
     Render(Render),
-    /// Check a scene: its objects, their bounds, what is proven about their distances
+    /// Check a scene: its objects, their bounds, what is proven about their distances, what a picture will cost
     Check(Check),
     /// Print a scene as JSON, which every command takes in place of a script
     Expand(Expand),
@@ -112,7 +112,7 @@ pub(crate) struct SceneArgs {
 pub(crate) struct Render {
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// The picture: .png, or .exr with all planes as layers. Default: the scene's name, in this folder
+    /// The picture: .png, or .exr with all planes as layers. Default: named as the scene's file, in this folder
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
     /// Size in pixels, for example 1920x1080. Default: what the scene says, or 512x512
@@ -146,6 +146,11 @@ pub(crate) struct Render {
     /// Frames a second, which says what time it is at a frame: --time plus frame / fps
     #[arg(long, value_name = "N", default_value_t = 30.0, value_parser = crate::values::positive, requires = "frames")]
     pub fps: f64,
+    /// Seconds that rendering a picture may take, after the scene is loaded. Then the file is written, whole, with what
+    /// there is: the tiles that are finished, and a picture of fewer rays or of larger pixels in all other places. What
+    /// share is finished is said on standard error, and the exit code is 5
+    #[arg(long, value_name = "SECONDS", value_parser = crate::values::positive)]
+    pub time_limit: Option<f64>,
     /// Render again whenever a file that the scene loads is saved, until Ctrl-C
     #[arg(long)]
     pub watch: bool,
@@ -230,7 +235,7 @@ pub(crate) struct Slice {
     /// The plane of the section, for example z=0 or y=-0.5
     #[arg(long, value_name = "AXIS=WHERE", default_value = "z=0")]
     pub plane: SectionPlane,
-    /// The picture: .png. Default: the scene's name with -slice, in this folder
+    /// The picture: .png. Default: named as the scene's file with -slice, in this folder
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
     /// Size in pixels

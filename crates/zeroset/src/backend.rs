@@ -8,8 +8,8 @@ use std::cell::OnceCell;
 use std::cell::RefCell;
 #[cfg(feature = "gpu")]
 use zeroset_gpu::{Choice, GpuRenderer};
-use zeroset_scene::film::Plane;
-use zeroset_scene::render::{Frame, Observer, RenderError, Renderer};
+use zeroset_scene::film::{Film, Plane};
+use zeroset_scene::render::{Frame, Observer, RenderError, Renderer, Statistics};
 use zeroset_scene::scene::Scene;
 use zeroset_trace::CpuRenderer;
 
@@ -55,6 +55,15 @@ impl Used {
     }
 }
 
+/// As much of a picture as there was time for.
+pub(crate) struct Part {
+    pub(crate) film: Film,
+    pub(crate) statistics: Statistics,
+    pub(crate) used: Used,
+    /// The tiles that are finished (left, top, width, height), unless all of it is.
+    pub(crate) finished: Option<Vec<[u32; 4]>>,
+}
+
 /// The renderer that was asked for.
 pub(crate) struct Engine<'a> {
     console: &'a Console,
@@ -96,7 +105,7 @@ impl<'a> Engine<'a> {
         Ok(engine)
     }
 
-    /// Renders. Where the GPU fails and the CPU may stand in, says so, calls `restart` and begins anew.
+    /// Renders at least these planes. Where the GPU fails and the CPU may stand in, says so, calls `restart` and begins anew.
     pub(crate) fn render(
         &self,
         scene: &Scene,
@@ -122,8 +131,53 @@ impl<'a> Engine<'a> {
         }
         #[cfg(not(feature = "gpu"))]
         let _ = (restart, self.console);
-        let frame = self.cpu()?.render_planes(scene, planes, observer)?;
-        Ok((frame, Used::Cpu))
+        let renderer = self.cpu()?;
+        let picture = renderer.prepare(scene)?;
+        let [width, height] = scene.settings.size;
+        // a plane that nobody looks at takes gigabytes of a large picture
+        let mut film = Film::with(width, height, planes);
+        let statistics = renderer.render_into(&picture, &mut film, observer)?;
+        Ok((Frame { film, statistics }, Used::Cpu))
+    }
+
+    /// As [`Engine::render`], and keeps what is finished when the observer ends it; `None` where nothing is kept.
+    pub(crate) fn render_part(
+        &self,
+        scene: &Scene,
+        planes: &[Plane],
+        observer: &dyn Observer,
+        restart: &dyn Fn(),
+    ) -> Result<Option<Part>, RenderError> {
+        if self.is_on_gpu() {
+            let (frame, used) = match self.render(scene, planes, observer, restart) {
+                Err(RenderError::Cancelled) => return Ok(None),
+                other => other?,
+            };
+            return Ok(Some(Part {
+                film: frame.film,
+                statistics: frame.statistics,
+                used,
+                finished: None,
+            }));
+        }
+        let renderer = self.cpu()?;
+        let picture = renderer.prepare(scene)?;
+        let [width, height] = scene.settings.size;
+        let mut film = Film::with(width, height, planes);
+        let part = renderer.render_part(&picture, &mut film, observer);
+        Ok(Some(Part {
+            film,
+            statistics: part.statistics,
+            used: Used::Cpu,
+            finished: (!part.is_whole).then_some(part.finished),
+        }))
+    }
+
+    fn is_on_gpu(&self) -> bool {
+        #[cfg(feature = "gpu")]
+        return self.gpu.borrow().is_some();
+        #[cfg(not(feature = "gpu"))]
+        false
     }
 
     fn cpu(&self) -> Result<&CpuRenderer, RenderError> {

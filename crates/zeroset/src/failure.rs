@@ -1,7 +1,9 @@
 //! What ends a command early, and the exit code it ends with.
 
+use crate::scene::{Unreadable, readable};
 use miette::{Diagnostic, MietteDiagnostic};
-use zeroset_output::atomic::WriteError;
+use std::path::PathBuf;
+use zeroset_output::atomic::{WriteError, WriteFailure};
 use zeroset_output::format::read::ReadError;
 use zeroset_scene::render::RenderError;
 
@@ -19,6 +21,8 @@ pub(crate) enum Exit {
     Scene = 3,
     /// A file could not be read or written.
     File = 4,
+    /// The time limit ended a picture.
+    Unfinished = 5,
     /// Ctrl-C, or asked to end by the system.
     Interrupted = 130,
 }
@@ -31,6 +35,7 @@ Exit codes:
     2  the command line is wrong
     3  the scene is wrong: the message names file, line and column
     4  a file could not be read or written; a file that existed is whole
+    5  --time-limit ended a picture: it was written as far as it got
   130  interrupted: a file that existed is whole
 
 Results go to files or to standard output; progress, notes and errors go to standard error.";
@@ -73,6 +78,9 @@ impl Failure {
 
 impl From<WriteError> for Failure {
     fn from(error: WriteError) -> Self {
+        if matches!(error.failure, WriteFailure::Cancelled) {
+            return Failure::silent(Exit::Interrupted);
+        }
         Failure::with_help(Exit::File, error.to_string(), error.advice())
     }
 }
@@ -85,8 +93,20 @@ impl From<ReadError> for Failure {
 
 impl From<zeroset_scene::load::Failed> for Failure {
     fn from(failed: zeroset_scene::load::Failed) -> Self {
+        // A file that is there and cannot be read says nothing about the scene, nor does the scene's own that is not there;
+        // that another one is not there does.
+        let is_unreadable = |(number, path): (usize, &PathBuf)| match readable(path) {
+            Ok(()) => false,
+            Err(Unreadable::System(_)) => true,
+            Err(_) => number == 0,
+        };
+        let exit = if failed.files.iter().enumerate().any(is_unreadable) {
+            Exit::File
+        } else {
+            Exit::Scene
+        };
         Failure {
-            exit: Exit::Scene,
+            exit,
             report: Some(failed.report),
         }
     }

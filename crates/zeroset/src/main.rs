@@ -5,27 +5,32 @@ mod backend;
 mod bench;
 mod command;
 mod console;
+mod estimate;
 mod failure;
+mod file;
 mod interrupt;
 mod json;
 mod reference;
 mod render;
+mod report;
 mod scene;
 mod values;
 
 use args::{Command, CommandLine};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{ColorChoice, CommandFactory, FromArgMatches};
-use console::{Colour, Console};
+use console::{Colour, Console, say};
 use failure::{Exit, Failure};
 use std::ffi::OsString;
-use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
+use zeroset_output::display;
 
 fn main() -> ExitCode {
+    std::panic::set_hook(Box::new(console::panicked));
     let arguments: Vec<OsString> = std::env::args_os().collect();
     let choice = match asked_colour(&arguments) {
+        Colour::Auto if console::is_dumb() => ColorChoice::Never,
         Colour::Auto => ColorChoice::Auto,
         Colour::Always => ColorChoice::Always,
         Colour::Never => ColorChoice::Never,
@@ -47,9 +52,13 @@ fn main() -> ExitCode {
         Ok(line) => line,
         Err(error) => {
             // help and version go to standard output and are no error
-            let _ = error.print();
+            if error.use_stderr() && arguments.iter().any(|a| is_odd(&a.to_string_lossy())) {
+                say(error.render().to_string().trim_end());
+            } else {
+                let _ = error.print();
+            }
             if let Some(scene) = scene_as_command(&error) {
-                let _ = writeln!(io::stderr(), "\nTo render it: zeroset render {scene}");
+                say(&format!("\nTo render it: zeroset render {scene}"));
             }
             return ExitCode::from(if error.use_stderr() {
                 Exit::Usage
@@ -63,9 +72,7 @@ fn main() -> ExitCode {
     let exit = match run(&line.command, &console) {
         Ok(()) => Exit::Done,
         Err(failure) => {
-            if let Some(report) = &failure.report {
-                console.report(report.as_ref());
-            }
+            console.failure(&failure);
             failure.exit
         }
     };
@@ -90,6 +97,12 @@ fn run(command: &Command, console: &Console) -> Result<(), Failure> {
         Command::Completions(args) => command::completions::completions(args, console),
         Command::Man(args) => command::completions::man(args, console),
     }
+}
+
+/// Whether an argument is nothing to repeat as it is: the name of a file may come from anybody.
+fn is_odd(argument: &str) -> bool {
+    argument.len() > display::LINE
+        || argument.contains(|c: char| display::is_control(c) || c == '\n')
 }
 
 /// The scene that was named where a command belongs.

@@ -5,6 +5,9 @@ use crate::console::Console;
 use crate::failure::{Exit, Failure};
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::{self, Read};
+use std::path::Path;
+use zeroset_output::display::LINES;
 use zeroset_scene::limits::Limits;
 use zeroset_scene::load::{Failed, Loaded, Options, load};
 
@@ -49,24 +52,45 @@ pub(crate) fn check_size([width, height]: [u32; 2], limits: &Limits) -> Result<(
     ))
 }
 
-/// Whether there is a file: where there is none, nothing is wrong with a scene.
+/// Why a file cannot be read.
+pub(crate) enum Unreadable {
+    /// There is none.
+    Missing(io::Error),
+    /// It is a folder, a device, a pipe.
+    Special,
+    /// What the system says.
+    System(io::Error),
+}
+
+/// Whether there is a file that can be read. A pipe or a device is never opened, as that could wait for ever.
+pub(crate) fn readable(path: &Path) -> Result<(), Unreadable> {
+    let sorted = |error: io::Error| match error.kind() {
+        io::ErrorKind::NotFound => Unreadable::Missing(error),
+        _ => Unreadable::System(error),
+    };
+    if !fs::metadata(path).map_err(sorted)?.is_file() {
+        return Err(Unreadable::Special);
+    }
+    let read = |mut file: fs::File| file.read(&mut [0; 1]);
+    fs::File::open(path)
+        .and_then(read)
+        .map(drop)
+        .map_err(sorted)
+}
+
+/// Whether the scene's file can be read: where it cannot, nothing is wrong with the scene.
 pub(crate) fn present(args: &SceneArgs) -> Result<(), Failure> {
     let path = args.scene.display();
-    match fs::metadata(&args.scene) {
-        Ok(metadata) if metadata.is_file() => Ok(()),
-        Ok(_) => {
-            let message = format!("cannot read {path}: it is not a regular file");
-            Err(Failure::with_help(
-                Exit::File,
-                message,
-                "name a scene, for example scene.star",
-            ))
-        }
-        Err(error) => Err(Failure::new(
+    readable(&args.scene).map_err(|why| match why {
+        Unreadable::Special => Failure::with_help(
             Exit::File,
-            format!("cannot read {path}: {error}"),
-        )),
-    }
+            format!("cannot read {path}: it is not a regular file"),
+            "name a scene, for example scene.star",
+        ),
+        Unreadable::Missing(error) | Unreadable::System(error) => {
+            Failure::new(Exit::File, format!("cannot read {path}: {error}"))
+        }
+    })
 }
 
 /// Loads the scene and says what it prints.
@@ -87,9 +111,7 @@ pub(crate) fn attempt(
 ) -> Result<Loaded, Failed> {
     let start = std::time::Instant::now();
     let loaded = load(&args.scene, options)?;
-    for line in &loaded.log {
-        console.note(line);
-    }
+    say_printed(&loaded.log, console);
     for warning in &loaded.warnings {
         console.warn(warning);
     }
@@ -101,4 +123,14 @@ pub(crate) fn attempt(
         1e3 * start.elapsed().as_secs_f64()
     );
     Ok(loaded)
+}
+
+/// Says what the scene prints, as far as anybody would read it.
+fn say_printed(log: &[String], console: &Console) {
+    for line in log.iter().take(LINES) {
+        console.note(line);
+    }
+    if log.len() > LINES {
+        console.note(format_args!("…({} lines left out)", log.len() - LINES));
+    }
 }

@@ -3,10 +3,12 @@
 //! One part with one channel a number: `R`, `G` and `B` are the linear colour, so that every viewer shows the picture,
 //! and the other planes are layers by the convention of a dot in the name (`normal.X`, `steps.Y`, ...).
 
-use super::{Notes, SOFTWARE};
+use super::attributes::Sorted;
+use super::{Asking, Notes, SOFTWARE};
 use ::exr::prelude::*;
 use std::io::{self, Seek, Write};
 use zeroset_scene::film::{Film, Plane};
+use zeroset_scene::render::{Observer, Silent};
 
 /// Names of a plane's channels.
 fn channels(plane: Plane) -> &'static [&'static str] {
@@ -29,6 +31,19 @@ fn channels(plane: Plane) -> &'static [&'static str] {
 /// # Errors
 /// What the writer gives; a film without pixels.
 pub fn write(writer: impl Write + Seek, film: &Film, notes: &Notes) -> io::Result<()> {
+    write_watched(writer, film, notes, &Silent)
+}
+
+/// As [`write()`], and tells an observer of the pixels that are done.
+///
+/// # Errors
+/// As [`write()`], and [`Cancelled`](super::Cancelled) where the observer wants it.
+pub fn write_watched(
+    writer: impl Write + Seek,
+    film: &Film,
+    notes: &Notes,
+    observer: &dyn Observer,
+) -> io::Result<()> {
     let size = Vec2(film.width() as usize, film.height() as usize);
     let held = Plane::ALL
         .iter()
@@ -49,14 +64,9 @@ pub fn write(writer: impl Write + Seek, film: &Film, notes: &Notes) -> io::Resul
         software_name: Some(text(SOFTWARE)),
         ..LayerAttributes::default()
     };
-    let title = ("title", notes.title.as_str());
-    for (key, value) in [title]
-        .into_iter()
-        .chain(notes.entries.iter().map(|(k, t)| (k.as_str(), t.as_str())))
-    {
-        attributes
-            .other
-            .insert(text(key), AttributeValue::Text(text(value)));
+    for (key, value) in notes.written("title") {
+        let value = AttributeValue::Text(text(&value));
+        attributes.other.insert(text(key), value);
     }
     let layer = Layer::new(
         size,
@@ -64,8 +74,16 @@ pub fn write(writer: impl Write + Seek, film: &Film, notes: &Notes) -> io::Resul
         Encoding::SMALL_LOSSLESS,
         AnyChannels::sort(list.collect()),
     );
+    let writer = Sorted::new(Asking { writer, observer });
+    let total = u64::from(film.width()) * u64::from(film.height());
+    let mut told = 0;
     Image::from_layer(layer)
         .write()
+        .on_progress(|share| {
+            let done = (share * total as f64) as u64;
+            observer.advance(done.saturating_sub(told), total);
+            told = told.max(done);
+        })
         .to_buffered(writer)
         .map_err(|error| match error {
             Error::Io(error) => error,

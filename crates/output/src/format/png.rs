@@ -1,10 +1,11 @@
 //! PNG: 8 or 16 bits a channel, sRGB, with notes in text chunks.
 
-use super::{Notes, SOFTWARE};
+use super::{Asking, Notes, SOFTWARE};
 use crate::picture::Rows;
 use crate::tone;
 use ::png::{BitDepth, ColorType, Encoder, EncodingError, SrgbRenderingIntent};
 use std::io::{self, Write};
+use zeroset_scene::render::{Observer, Silent};
 
 /// Bits a channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -22,19 +23,39 @@ pub enum Depth {
 /// What the writer gives; a picture without pixels or with a side of more than 2^31 - 1, which PNG cannot hold.
 pub fn write(
     writer: impl Write,
-    picture: &impl Rows,
+    picture: &dyn Rows,
     depth: Depth,
     notes: &Notes,
 ) -> io::Result<()> {
+    write_watched(writer, picture, depth, notes, &Silent)
+}
+
+/// As [`write()`], and tells an observer of the pixels that are done.
+///
+/// # Errors
+/// As [`write()`], and [`Cancelled`](super::Cancelled) where the observer wants it.
+pub fn write_watched(
+    writer: impl Write,
+    picture: &dyn Rows,
+    depth: Depth,
+    notes: &Notes,
+    observer: &dyn Observer,
+) -> io::Result<()> {
     let mut writer = Faithful {
-        writer,
+        writer: Asking { writer, observer },
         failed: None,
     };
-    let encoded = encode(&mut writer, picture, depth, notes);
+    let encoded = encode(&mut writer, picture, depth, notes, observer);
     writer.failed.map_or(encoded, Err)
 }
 
-fn encode(writer: impl Write, picture: &impl Rows, depth: Depth, notes: &Notes) -> io::Result<()> {
+fn encode(
+    writer: impl Write,
+    picture: &dyn Rows,
+    depth: Depth,
+    notes: &Notes,
+    observer: &dyn Observer,
+) -> io::Result<()> {
     let mut encoder = Encoder::new(writer, picture.width(), picture.height());
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(match depth {
@@ -45,25 +66,20 @@ fn encode(writer: impl Write, picture: &impl Rows, depth: Depth, notes: &Notes) 
     encoder
         .add_text_chunk("Software".to_owned(), SOFTWARE.to_owned())
         .map_err(plain)?;
-    let title = ("Title", notes.title.as_str());
-    for (key, text) in [title]
-        .into_iter()
-        .chain(notes.entries.iter().map(|(k, t)| (k.as_str(), t.as_str())))
-    {
+    for (key, text) in notes.written("Title") {
+        let (key, text) = (key.to_owned(), text.into_owned());
         if text.is_ascii() {
-            encoder
-                .add_text_chunk(key.to_owned(), text.to_owned())
-                .map_err(plain)?;
+            encoder.add_text_chunk(key, text).map_err(plain)?;
         } else {
-            encoder
-                .add_itxt_chunk(key.to_owned(), text.to_owned())
-                .map_err(plain)?;
+            encoder.add_itxt_chunk(key, text).map_err(plain)?;
         }
     }
     let mut writer = encoder.write_header().map_err(plain)?;
     let mut stream = writer.stream_writer().map_err(plain)?;
     let mut line = Vec::with_capacity(picture.width() as usize * 6);
     let mut row = Vec::new();
+    let width = u64::from(picture.width());
+    let total = width * u64::from(picture.height());
     for y in 0..picture.height() {
         picture.row(y, &mut row);
         line.clear();
@@ -75,7 +91,12 @@ fn encode(writer: impl Write, picture: &impl Rows, depth: Depth, notes: &Notes) 
                 }
             }
         }
+        // rows that compress to nothing are not written before the end
+        if observer.is_cancelled() {
+            return Err(io::Error::other(super::Cancelled));
+        }
         stream.write_all(&line)?;
+        observer.advance(width, total);
     }
     stream.finish().map_err(plain)?;
     writer.finish().map_err(plain)

@@ -91,6 +91,9 @@ pub(super) fn hemisphere<S: Simd, P: Penumbra<S>>(
     q.hits.open[range.clone()].fill(0.0);
     let scramble = std::mem::take(&mut q.scramble);
     for index in 0..rays {
+        if solid.stop.is_set() {
+            break;
+        }
         let aim = Around {
             index,
             reach: reach.unwrap_or(f32::INFINITY),

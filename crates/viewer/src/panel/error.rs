@@ -4,6 +4,7 @@ use super::picked::card;
 use crate::session::Session;
 use crate::style::Palette;
 use eframe::egui::{RichText, ScrollArea, Stroke, Ui};
+use zeroset_output::display::text;
 
 /// The report, over the last good picture.
 pub fn error(ui: &mut Ui, session: &Session) {
@@ -32,8 +33,8 @@ pub fn error(ui: &mut Ui, session: &Session) {
                 .max_height(260.0)
                 .id_salt("report")
                 .show(ui, |ui| {
-                    let text = RichText::new(report.trim_end()).monospace();
-                    ui.add(eframe::egui::Label::new(text).extend());
+                    let label = RichText::new(text(report.trim_end())).monospace();
+                    ui.add(eframe::egui::Label::new(label).extend());
                     ui.add_space(6.0);
                 });
         });

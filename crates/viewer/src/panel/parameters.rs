@@ -3,6 +3,7 @@
 use crate::session::{Session, levels};
 use crate::widget::{aside, row, slide};
 use eframe::egui::{ComboBox, Slider, Ui};
+use zeroset_output::display::{NAME, name as shown};
 use zeroset_scene::load::{Control, Parameter, Setting};
 
 /// The parameters of the scene.
@@ -35,10 +36,10 @@ pub fn parameters(ui: &mut Ui, session: &mut Session) {
 
 /// The control of a parameter. Gives what it was set to.
 fn control(ui: &mut Ui, parameter: &Parameter, before: &Setting) -> Option<Setting> {
-    let name = &parameter.name;
+    let name = &shown(&parameter.name, NAME);
     let place = parameter.place.as_ref();
     let about = place.map_or_else(String::new, |(file, line, _)| {
-        format!("{name} ({file}:{line})")
+        format!("{name} ({}:{line})", shown(file, NAME))
     });
     match (&parameter.control, before) {
         (Control::Slider { min, max }, Setting::Number(x)) => {
@@ -51,12 +52,15 @@ fn control(ui: &mut Ui, parameter: &Parameter, before: &Setting) -> Option<Setti
         (Control::Choice { options }, Setting::Text(text)) => {
             let (_, chosen) = row(ui, name, &about, |ui| {
                 let mut chosen = None;
-                let shown = ComboBox::from_id_salt(name)
-                    .selected_text(text.as_str())
+                let shown = ComboBox::from_id_salt(&parameter.name)
+                    .selected_text(shown(text, NAME))
                     .width(ui.available_width() - 8.0)
                     .show_ui(ui, |ui| {
                         for option in options {
-                            if ui.selectable_label(option == text, option).clicked() {
+                            if ui
+                                .selectable_label(option == text, shown(option, NAME))
+                                .clicked()
+                            {
                                 chosen = Some(Setting::Text(option.clone()));
                             }
                         }

@@ -5,6 +5,7 @@ use crate::style::Palette;
 use crate::widget::row;
 use eframe::egui::{Color32, Frame, Label, Margin, RichText, Sense, Stroke, Ui, vec2};
 use glam::Vec3;
+use zeroset_output::display::{NAME, name as shown};
 use zeroset_output::tone;
 
 /// A card with the object, its material, the point, and its place in the file. Gives whether it was closed.
@@ -27,7 +28,7 @@ pub fn picked(ui: &mut Ui, session: &mut Session) -> bool {
             let name = if picked.name.parse::<u64>().is_ok() {
                 format!("Object {}", picked.name)
             } else {
-                picked.name.clone()
+                shown(&picked.name, NAME)
             };
             ui.label(RichText::new(name).strong());
             ui.with_layout(
@@ -38,7 +39,7 @@ pub fn picked(ui: &mut Ui, session: &mut Session) -> bool {
                 },
             );
         });
-        if let Some(place) = picked.whereabouts() {
+        if let Some(place) = picked.whereabouts().map(|place| shown(&place, 200)) {
             row(
                 ui,
                 "In the file",
@@ -56,7 +57,7 @@ pub fn picked(ui: &mut Ui, session: &mut Session) -> bool {
                     .on_hover_text(text);
             });
         };
-        fact(ui, "Material", picked.material.clone());
+        fact(ui, "Material", shown(&picked.material, 200));
         fact(ui, "Point", spoken(picked.point));
         fact(ui, "Normal", spoken(picked.normal));
         fact(ui, "Distance", format!("{:.4}", picked.distance));

@@ -3,6 +3,7 @@
 use crate::engine::Exposed;
 use crate::session::Session;
 use eframe::egui::{Align, Layout, Response, RichText, Ui};
+use zeroset_output::display::{NAME, name};
 
 /// Frame time, evaluations, resolution, rays a pixel, and what renders; of two looks, for each.
 pub fn status(ui: &mut Ui, session: &Session) {
@@ -30,7 +31,7 @@ pub fn status(ui: &mut Ui, session: &Session) {
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let backend = session.backend.as_deref().unwrap_or("starting");
-            quiet(ui, backend.to_owned()).on_hover_text("What renders the picture");
+            quiet(ui, name(backend, NAME)).on_hover_text("What renders the picture");
         });
     });
 }

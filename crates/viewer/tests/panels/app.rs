@@ -1,13 +1,16 @@
 //! The whole window: keys, mouse, focus.
 
-use crate::session::rendered;
+use crate::session::{outcome, rendered};
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Key, Modifiers, PointerButton, Pos2, Ui, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::collections::HashSet;
+use zeroset_output::display::is_control;
 use zeroset_scene::film::Plane;
+use zeroset_scene::load::Options;
 use zeroset_viewer::app::App;
+use zeroset_viewer::pick::pick;
 use zeroset_viewer::session::Session;
 
 /// The window, made once there is a context.
@@ -336,4 +339,83 @@ fn a_picture_is_saved_under_a_name() {
         assert_eq!(path.exists(), said == "Saved", "{file}");
     }
     std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// Everything that a window says, as a screen reader reads it.
+fn said(session: Session) -> Vec<String> {
+    let closed = Window::Closed(Some(Box::new(session)));
+    let mut harness = Harness::builder()
+        .with_size([1200.0, 2000.0])
+        .with_max_steps(24)
+        .build_ui_state(Window::show, closed);
+    harness.run_steps(3);
+    let root = harness.root();
+    let nodes = root.children_recursive();
+    let texts = nodes.flat_map(|n| {
+        let node = n.accesskit_node();
+        [node.label(), node.value(), node.description()]
+    });
+    texts.flatten().collect()
+}
+
+#[test]
+fn texts_of_a_stranger_are_shown_clean_and_cut() {
+    let long = "y".repeat(1 << 18);
+    for text in [
+        "\u{1b}]0;owned\u{7}",
+        "\u{9b}31m",
+        "\u{202e}gnp.\u{2066}",
+        "a\u{8}\u{7f}",
+        &long,
+    ] {
+        let script = format!(
+            "r = slider(\"{text}\", 0.5)\nc = choice(\"c{text}\", [\"{text}\", \"b\"])\n\
+             t = toggle(\"t{text}\", True)\nk = color(\"k{text}\", \"red\")\nprint(\"{text}\")\n\
+             show(sphere(r), name = \"{text}\")\nrender(size = (320, 240), aa = none())\n"
+        );
+        let session = rendered(|session| {
+            session.absorb(outcome(&script, &Options::default()));
+            assert_eq!(session.trouble, None);
+        });
+        let mut picked = rendered(|session| session.absorb(outcome(&script, &Options::default())));
+        let scene = &picked.current.as_ref().unwrap().scene;
+        let film = &picked.shown.as_ref().unwrap().sides[0].film;
+        picked.picked = pick(film, &scene.camera, scene, [0.5, 0.5]);
+        assert!(picked.picked.is_some());
+        let mut broken = rendered(|_| {});
+        broken.trouble = Some(format!("{text} is wrong"));
+        let odd = Session::new(format!("{text}.star").into(), Options::default());
+        for session in [session, picked, broken, odd] {
+            let all = said(session);
+            assert!(all.len() > 20);
+            for said in all {
+                assert!(!said.contains(is_control), "{said:?}");
+                assert!(
+                    said.chars().count() < 2000,
+                    "{} characters",
+                    said.chars().count()
+                );
+            }
+        }
+    }
+}
+
+/// A scene calls itself what it wants; its picture is called after its file.
+#[test]
+fn a_picture_is_named_after_the_file() {
+    let mut session = rendered(|_| {});
+    let current = session.current.as_mut().unwrap();
+    let mut scene = (*current.scene).clone();
+    scene.name = "/etc/../../victim".to_owned();
+    current.scene = std::sync::Arc::new(scene);
+    let closed = Window::Closed(Some(Box::new(session)));
+    let mut harness = Harness::builder()
+        .with_size([1100.0, 700.0])
+        .with_max_steps(24)
+        .build_ui_state(Window::show, closed);
+    harness.run();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
+    harness.run_steps(2);
+    let edit = harness.get_by_role_and_label(Role::TextInput, "File name");
+    assert_eq!(edit.accesskit_node().value().as_deref(), Some("test.png"));
 }

@@ -47,7 +47,7 @@ pub(crate) fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
                 .map_err(|error| invalid(error.to_string()))?;
             let found = eval::eval(&program);
             if what.json {
-                return console.print(&json::line(&found)?);
+                return console.emit(&json::line(&found)?);
             }
             console.print(&format!(
                 "{}, {} instructions, one thread\n\
@@ -69,7 +69,7 @@ pub(crate) fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
             };
             let found = march::march(&scene).map_err(failed)?;
             if what.json {
-                return console.print(&json::line(&found)?);
+                return console.emit(&json::line(&found)?);
             }
             let row = |(name, evaluations): (&String, &f64)| {
                 let (share, missed) = (found.share_of_sphere[name], found.missed_hits[name]);
@@ -89,7 +89,7 @@ pub(crate) fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
             if let Some(renderer) = crate::backend::gpu(what.backend, what.adapter.as_deref())? {
                 let found = gpu::frame(&scene, usize::from(what.threads), &renderer);
                 let found = found.map_err(failed)?;
-                return console.print(&if what.json {
+                return console.emit(&if what.json {
                     json::line(&found)?
                 } else {
                     found.text()
@@ -99,7 +99,7 @@ pub(crate) fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
             crate::backend::refused(what.backend, what.adapter.as_deref())?;
             let found = frame::frame(&scene, usize::from(what.threads)).map_err(failed)?;
             if what.json {
-                return console.print(&json::line(&found)?);
+                return console.emit(&json::line(&found)?);
             }
             let e = found.evaluations_per_pixel;
             console.print(&format!(

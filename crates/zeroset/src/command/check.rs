@@ -2,6 +2,7 @@
 
 use crate::args::Check;
 use crate::console::Console;
+use crate::estimate::{self, Cost};
 use crate::failure::{Exit, Failure};
 use crate::json;
 use crate::reference::shortest;
@@ -11,6 +12,7 @@ use std::fmt::Write;
 use zeroset_field::bounds::{Aabb, Exactness};
 use zeroset_field::field::{Field, Node};
 use zeroset_field::program::{Limits, Program};
+use zeroset_output::display;
 use zeroset_scene::load::{Control, Loaded, Setting};
 
 /// What `--json` prints.
@@ -30,6 +32,8 @@ struct Findings {
     instructions: Option<usize>,
     /// Whether every distance is proven never to be too large.
     proven: bool,
+    /// What the picture will cost.
+    cost: Cost,
 }
 
 #[derive(Serialize)]
@@ -68,15 +72,16 @@ pub(crate) fn run(args: &Check, console: &Console) -> Result<(), Failure> {
     let program = program
         .transpose()
         .map_err(|error| invalid(error.to_string()))?;
-    let findings = findings(&loaded, program.as_ref());
-    console.print(&if args.json {
-        json::pretty(&findings)?
+    let cost = estimate::cost(&loaded.scene)?;
+    let findings = findings(&loaded, program.as_ref(), cost);
+    if args.json {
+        console.emit(&json::pretty(&findings)?)
     } else {
-        words(&findings)
-    })
+        console.print(&words(&findings))
+    }
 }
 
-fn findings(loaded: &Loaded, program: Option<&Program>) -> Findings {
+fn findings(loaded: &Loaded, program: Option<&Program>, cost: Cost) -> Findings {
     let scene = &loaded.scene;
     let objects: Vec<ObjectFinding> = (scene.objects.iter())
         .map(|object| {
@@ -123,6 +128,7 @@ fn findings(loaded: &Loaded, program: Option<&Program>) -> Findings {
         parameters: parameters.collect(),
         proven: objects.iter().all(|o| o.unproven.is_empty()),
         objects,
+        cost,
         instructions: program.map(|p| p.structure().values.instructions.len()),
     }
 }
@@ -182,7 +188,7 @@ fn words(findings: &Findings) -> String {
     let _ = writeln!(
         out,
         "{}: {} object{}, {} light{}, {} x {} pixels{}",
-        findings.scene,
+        name(&findings.scene),
         findings.objects.len(),
         plural(findings.objects.len()),
         findings.lights,
@@ -195,30 +201,32 @@ fn words(findings: &Findings) -> String {
         let changed = if p.value == p.default {
             String::new()
         } else {
-            format!(", default {}", p.default)
+            format!(", default {}", name(&p.default))
         };
-        let _ = writeln!(out, "  {} = {} ({}{changed})", p.name, p.value, p.allowed);
+        let (allowed, value) = (display::name(&p.allowed, 200), name(&p.value));
+        let _ = writeln!(out, "  {} = {value} ({allowed}{changed})", name(&p.name));
     }
     if !findings.objects.is_empty() {
-        let name = findings
+        let short = |name: &str| {
+            display::clean(&name.chars().take(24).collect::<String>()).replace(['\n', '\t'], " ")
+        };
+        let names = findings
             .objects
             .iter()
-            .map(|o| o.name.chars().count())
-            .max()
-            .unwrap_or(0)
-            .clamp(6, 24);
+            .map(|o| short(&o.name).chars().count());
+        let width = names.max().unwrap_or(0).clamp(6, 24);
         let _ = writeln!(
             out,
-            "\n{:name$}  {:13}  {:9}  {:>6}  bounds",
+            "\n{:width$}  {:13}  {:9}  {:>6}  bounds",
             "object", "distance", "Lipschitz", "nodes"
         );
         for o in &findings.objects {
-            let short: String = o.name.chars().take(24).collect();
+            let short = short(&o.name);
             let lipschitz = shortest((o.lipschitz * 1e4).round() / 1e4);
             let bounds = spoken(&o.bounds);
             let _ = writeln!(
                 out,
-                "{short:name$}  {:13}  {lipschitz:9}  {:>6}  {bounds}",
+                "{short:width$}  {:13}  {lipschitz:9}  {:>6}  {bounds}",
                 o.distance, o.nodes
             );
         }
@@ -231,7 +239,7 @@ fn words(findings: &Findings) -> String {
         let _ = writeln!(
             out,
             "Unproven: {} rests on {}",
-            o.name,
+            name(&o.name),
             o.unproven.join(", ")
         );
     }
@@ -242,7 +250,12 @@ fn words(findings: &Findings) -> String {
             plural(instructions)
         );
     }
-    out
+    out + &findings.cost.words([findings.width, findings.height])
+}
+
+/// A name that somebody chose.
+fn name(from: &str) -> String {
+    display::name(from, display::NAME)
 }
 
 fn spoken([min, max]: &[[Option<f64>; 3]; 2]) -> String {

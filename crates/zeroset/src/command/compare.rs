@@ -3,12 +3,13 @@
 use crate::args::Compare;
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
+use crate::file::write_watched;
 use crate::json;
 use serde::Serialize;
-use zeroset_output::atomic::{probe, write_atomically};
+use zeroset_output::atomic::probe;
 use zeroset_output::compare::{Comparison, compare};
 use zeroset_output::format::Notes;
-use zeroset_output::format::png::{Depth, write};
+use zeroset_output::format::png::{Depth, write_watched as write_watched_png};
 use zeroset_output::format::read::read;
 
 /// What `--json` prints.
@@ -37,12 +38,13 @@ pub(crate) fn run(args: &Compare, console: &Console) -> Result<(), Failure> {
         compare(&reference, &test).map_err(|error| Failure::new(Exit::Job, error.to_string()))?;
     if let Some(path) = &args.output {
         let notes = Notes::new("difference").with("Metric", "FLIP");
-        write_atomically(path, |writer| {
-            write(writer, &found.picture(), Depth::Eight, &notes)
+        let picture = found.picture();
+        write_watched(path, console, &|| false, |writer, observer| {
+            write_watched_png(writer, &picture, Depth::Eight, &notes, observer)
         })?;
     }
     if args.json {
-        return console.print(&json::line(&Numbers::of(&found))?);
+        return console.emit(&json::line(&Numbers::of(&found))?);
     }
     let psnr = if found.psnr.is_finite() {
         format!("{:.2} dB", found.psnr)

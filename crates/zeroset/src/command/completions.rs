@@ -9,7 +9,7 @@ use clap::CommandFactory;
 pub(crate) fn completions(args: &Completions, console: &Console) -> Result<(), Failure> {
     let mut out = Vec::new();
     clap_complete::generate(args.shell, &mut CommandLine::command(), "zeroset", &mut out);
-    console.print(&String::from_utf8_lossy(&out))
+    console.emit(&String::from_utf8_lossy(&out))
 }
 
 /// Prints a manual page.
@@ -37,5 +37,5 @@ pub(crate) fn man(args: &Man, console: &Console) -> Result<(), Failure> {
         .map_err(|error| {
             Failure::new(Exit::Job, format!("cannot make the manual page: {error}"))
         })?;
-    console.print(&String::from_utf8_lossy(&out))
+    console.emit(&String::from_utf8_lossy(&out))
 }

@@ -3,8 +3,9 @@
 use crate::args::Expand;
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
-use std::io::Write;
-use zeroset_output::atomic::{probe, write_atomically};
+use crate::file::write_text;
+use zeroset_output::atomic::probe;
+use zeroset_output::display;
 use zeroset_scene::json::{expand, to_text};
 
 /// Prints a scene as JSON.
@@ -15,11 +16,9 @@ pub(crate) fn run(args: &Expand, console: &Console) -> Result<(), Failure> {
     let options = crate::scene::options(&args.scene, None)?;
     let loaded = crate::scene::loaded(&args.scene, &options, console)?;
     let written = expand(&loaded.scene).map_err(|e| Failure::new(Exit::Scene, e.to_string()))?;
-    let text = to_text(&written);
+    let text = display::json(&to_text(&written));
     match &args.output {
-        None => console.print(&text),
-        Some(path) => Ok(write_atomically(path, |writer| {
-            writer.write_all(text.as_bytes())
-        })?),
+        None => console.emit(&text),
+        Some(path) => write_text(path, &text),
     }
 }

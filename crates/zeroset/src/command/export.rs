@@ -3,8 +3,9 @@
 use crate::args::Export;
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
-use std::io::Write;
-use zeroset_output::atomic::{probe, write_atomically};
+use crate::file::write_text;
+use zeroset_output::atomic::probe;
+use zeroset_output::display;
 use zeroset_scene::report::Report;
 use zeroset_shader::export::{ExportError, glsl, wgsl};
 
@@ -30,11 +31,11 @@ pub(crate) fn run(args: &Export, console: &Console) -> Result<(), Failure> {
     } else {
         wgsl(&scene)?
     };
+    // comments repeat names of the scene
+    let text = display::clean(&text);
     match &args.output {
-        None => console.print(&text),
-        Some(path) => Ok(write_atomically(path, |writer| {
-            writer.write_all(text.as_bytes())
-        })?),
+        None => console.emit(&text),
+        Some(path) => write_text(path, &text),
     }
 }
 

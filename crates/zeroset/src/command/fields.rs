@@ -11,7 +11,7 @@ use std::fmt::Write;
 pub(crate) fn run(args: &Fields, console: &Console) -> Result<(), Failure> {
     let entries = entries();
     let Some(name) = &args.name else {
-        return console.print(&if args.json {
+        return console.emit(&if args.json {
             json::pretty(&entries)?
         } else {
             listing(&entries)
@@ -31,7 +31,7 @@ pub(crate) fn run(args: &Fields, console: &Console) -> Result<(), Failure> {
             help,
         ));
     };
-    console.print(&if args.json {
+    console.emit(&if args.json {
         json::pretty(entry)?
     } else {
         page(entry)

@@ -43,7 +43,7 @@ pub(crate) fn run(args: &Gpu, console: &Console) -> Result<(), Failure> {
                 auto: automatic == Some(k),
             })
             .collect();
-        return console.print(&json::pretty(&listed)?);
+        return console.emit(&json::pretty(&listed)?);
     }
     let mut out = String::new();
     for (k, info) in all.iter().enumerate() {

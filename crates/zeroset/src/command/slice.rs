@@ -3,13 +3,14 @@
 use crate::args::Slice;
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
-use std::path::PathBuf;
+use crate::file::{default_name, write_watched};
 use zeroset::section::Plane;
 use zeroset_field::bounds::Aabb;
 use zeroset_field::program::{Limits, Program};
-use zeroset_output::atomic::{probe, write_atomically};
+use zeroset_output::atomic::probe;
+use zeroset_output::display;
 use zeroset_output::format::Notes;
-use zeroset_output::format::png::{Depth, write};
+use zeroset_output::format::png::{self, Depth};
 use zeroset_scene::film;
 use zeroset_scene::scene::Scene;
 
@@ -22,10 +23,10 @@ const UNBOUNDED: f64 = 2.0;
 pub(crate) fn run(args: &Slice, console: &Console) -> Result<(), Failure> {
     let options = crate::scene::options(&args.scene, Some(args.size.0))?;
     let scene = crate::scene::loaded(&args.scene, &options, console)?.scene;
-    let path = args
-        .output
-        .clone()
-        .unwrap_or_else(|| PathBuf::from(format!("{}-slice.png", scene.name)));
+    let path = match &args.output {
+        Some(path) => path.clone(),
+        None => default_name(&args.scene.scene, "-slice.png")?,
+    };
     if path
         .extension()
         .is_none_or(|e| !e.eq_ignore_ascii_case("png"))
@@ -54,8 +55,8 @@ pub(crate) fn run(args: &Slice, console: &Console) -> Result<(), Failure> {
     let plane = plane(args, &scene);
     let picture = plane.sample(&program, args.size.0).picture(!args.no_legend);
     let notes = Notes::new(&scene.name).with("Section", args.plane.to_string());
-    write_atomically(&path, |writer| {
-        write(writer, &picture, Depth::Eight, &notes)
+    write_watched(&path, console, &|| false, |writer, observer| {
+        png::write_watched(writer, &picture, Depth::Eight, &notes, observer)
     })?;
     let [width, height] = args.size.0.map(|n| f64::from(n) * plane.pixel);
     let shown = crate::reference::shortest;
@@ -63,7 +64,7 @@ pub(crate) fn run(args: &Slice, console: &Console) -> Result<(), Failure> {
         "{}: {} of {}, {} x {}",
         path.display(),
         args.plane,
-        scene.name,
+        display::name(&scene.name, display::NAME),
         shown(width),
         shown(height)
     ));

@@ -3,12 +3,11 @@
 use crate::args::View;
 use crate::console::plain_report;
 use crate::failure::{Exit, Failure};
-use crate::interrupt;
-use std::time::Duration;
 use zeroset_viewer::engine::{Backend, MakeBackend};
 use zeroset_viewer::{Open, open};
 
-/// Opens the window, and returns when it is closed.
+/// Opens the window, and returns when it is closed. Ctrl-C ends the process: what the window saves is whole or not there,
+/// whenever it ends.
 pub(crate) fn run(args: &View) -> Result<(), Failure> {
     crate::scene::present(&args.scene)?;
     let options = crate::scene::options(&args.scene, None)?;
@@ -18,16 +17,7 @@ pub(crate) fn run(args: &View) -> Result<(), Failure> {
         backend: backend(args)?,
         explain: |failed| plain_report(failed.report.as_ref()),
     };
-    std::thread::spawn(end_when_asked);
     open(window).map_err(|error| Failure::with_help(Exit::Job, error.to_string(), error.advice()))
-}
-
-/// Ends the process on Ctrl-C. What the window saves is whole or not there, whenever it ends.
-fn end_when_asked() {
-    while !interrupt::requested() {
-        std::thread::sleep(Duration::from_millis(100));
-    }
-    std::process::exit(Exit::Interrupted as i32);
 }
 
 /// What renders. A GPU that is asked for must be there before the window opens; one that may be there is looked for while

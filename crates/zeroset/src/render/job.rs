@@ -1,23 +1,26 @@
 //! One rendering: from a loaded scene to a file.
 
+use super::limited;
 use super::summary::{Evaluations, Summary};
-use super::target::{Container, default_name, numbered};
+use super::target::{Container, numbered, unnamed};
 use crate::args::Render;
 use crate::backend::{Engine, Used};
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
+use crate::file::{Progress, no_link, write_watched};
+use crate::interrupt::Asking;
 use crate::json;
-use indicatif::ProgressBar;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use zeroset_output::atomic::{probe, write_atomically};
+use std::time::Duration;
+use zeroset_output::atomic::probe;
 use zeroset_output::format::png::Depth;
 use zeroset_output::format::{Notes, exr, png};
-use zeroset_output::picture::Developed;
+use zeroset_output::picture::{Developed, Rows};
 use zeroset_output::view::{View, needed};
 use zeroset_scene::film::Plane;
 use zeroset_scene::load::{Loaded, Options};
-use zeroset_scene::render::{Frame, Observer};
+use zeroset_scene::render::Frame;
 use zeroset_scene::scene::Scene;
 
 /// What the flags ask for.
@@ -56,7 +59,8 @@ impl<'a> Job<'a> {
         })
     }
 
-    /// Renders to the file that the flags name, and says what it took.
+    /// Renders to the file that the flags name, and says what it took. What it gives is why the picture is not finished,
+    /// where a time limit ended it.
     ///
     /// # Errors
     /// The file cannot be written (which is found out first), the scene cannot be rendered, `cancelled` says to stop.
@@ -66,19 +70,22 @@ impl<'a> Job<'a> {
         options: &Options,
         frame: Option<(u32, &Range<u32>)>,
         cancelled: &(dyn Fn() -> bool + Sync),
-    ) -> Result<(), Failure> {
+    ) -> Result<Option<Failure>, Failure> {
+        let _asking = Asking::begin();
         let mut scene = loaded.scene.clone();
         if let Some(march) = self.args.march {
             scene.settings.march = march.0;
         }
-        let mut path = self
-            .args
-            .output
-            .clone()
-            .unwrap_or_else(|| default_name(&scene.name, self.args.view));
+        let mut path = match &self.args.output {
+            Some(path) => path.clone(),
+            None => unnamed(&self.args.scene.scene, self.args.view, frame.is_some())?,
+        };
         let mut label = scene.name.clone();
         if let Some((number, frames)) = frame {
             path = numbered(&path, number, frames);
+            if self.args.output.is_none() {
+                no_link(&path)?;
+            }
             label = format!("{label} {}/{}", number - frames.start + 1, frames.len());
         }
         let (planes, copies) = planes(&path, self.args.view)?;
@@ -87,14 +94,34 @@ impl<'a> Job<'a> {
             .map_err(|e| Failure::new(Exit::Scene, e.to_string()))?;
         probe(&path)?;
         let progress = Progress {
-            bar: self.console.bar(label),
+            bar: self.console.bar(&label),
             cancelled,
         };
         let restart = || progress.bar.reset();
-        let rendered = self.engine.render(&scene, planes, &progress, &restart);
+        let rendered = match self.args.time_limit {
+            None => self
+                .engine
+                .render(&scene, planes, &progress, &restart)
+                .map(|(frame, used)| (frame, used, None))
+                .map_err(Failure::from),
+            Some(seconds) => {
+                // beyond some years a limit is none
+                let most = Duration::from_secs_f64(seconds.min(1e9));
+                limited::render(&self.engine, &scene, planes, most, &progress, &restart)
+            }
+        };
         progress.bar.finish_and_clear();
-        let (rendered, used) = rendered?;
-        self.write(&path, &scene, options, &rendered)?;
+        let (rendered, used, lack) = rendered?;
+        let lack_words = lack.as_ref().map(limited::Lack::words);
+        self.write(
+            &path,
+            &scene,
+            options,
+            &rendered,
+            lack_words.as_deref(),
+            cancelled,
+        )?;
+        let finished = lack.as_ref().map_or(1.0, |lack| lack.finished);
         self.report(
             &path,
             &scene,
@@ -102,7 +129,15 @@ impl<'a> Job<'a> {
             frame.map(|(number, _)| number),
             &rendered,
             &used,
-        )
+            finished,
+        )?;
+        Ok(lack_words.map(|words| {
+            Failure::with_help(
+                Exit::Unfinished,
+                format!("{}: {words}", path.display()),
+                "`zeroset check` estimates what a picture takes; ask for a smaller one, or raise --time-limit",
+            )
+        }))
     }
 
     fn write(
@@ -111,6 +146,8 @@ impl<'a> Job<'a> {
         scene: &Scene,
         options: &Options,
         rendered: &Frame,
+        lack: Option<&str>,
+        cancelled: &(dyn Fn() -> bool + Sync),
     ) -> Result<(), Failure> {
         let mut notes = Notes::new(&scene.name).with("Settings", json::line(&scene.settings)?);
         if !options.set.is_empty() {
@@ -122,10 +159,13 @@ impl<'a> Job<'a> {
         if self.args.view != Plane::Colour {
             notes = notes.with("View", self.args.view.name());
         }
+        if let Some(lack) = lack {
+            notes = notes.with("Unfinished", lack);
+        }
         match Container::of(path)? {
-            Container::Exr => {
-                write_atomically(path, |writer| exr::write(writer, &rendered.film, &notes))?
-            }
+            Container::Exr => write_watched(path, self.console, cancelled, |writer, observer| {
+                exr::write_watched(writer, &rendered.film, &notes, observer)
+            }),
             Container::Png => {
                 let names: Vec<String> = scene.objects.iter().map(|o| o.name.clone()).collect();
                 let view = View {
@@ -139,19 +179,22 @@ impl<'a> Job<'a> {
                 } else {
                     Depth::Eight
                 };
+                let write = |picture: &dyn Rows| {
+                    write_watched(path, self.console, cancelled, |writer, observer| {
+                        png::write_watched(writer, picture, depth, &notes, observer)
+                    })
+                };
                 if view.plane == Plane::Colour {
                     // without a second copy of a picture that may be large
-                    let picture = Developed::new(&rendered.film, view.exposure);
-                    write_atomically(path, |writer| png::write(writer, &picture, depth, &notes))?;
+                    write(&Developed::new(&rendered.film, view.exposure))
                 } else {
-                    let picture = view.of(&rendered.film);
-                    write_atomically(path, |writer| png::write(writer, &picture, depth, &notes))?;
+                    write(&view.of(&rendered.film))
                 }
             }
         }
-        Ok(())
     }
 
+    #[expect(clippy::too_many_arguments, reason = "what there is to say")]
     fn report(
         &self,
         path: &Path,
@@ -160,6 +203,7 @@ impl<'a> Job<'a> {
         frame: Option<u32>,
         rendered: &Frame,
         used: &Used,
+        finished: f64,
     ) -> Result<(), Failure> {
         let statistics = &rendered.statistics;
         let rays = statistics.rays.max(1) as f64;
@@ -181,10 +225,11 @@ impl<'a> Job<'a> {
             rays_per_second: statistics.rays as f64 / statistics.seconds.max(1e-9),
             evaluations: Evaluations::of(statistics),
             evaluations_per_ray: statistics.evaluations.total() as f64 / rays,
+            finished,
             settings: &scene.settings,
         };
         if self.args.json {
-            return self.console.print(&json::line(&summary)?);
+            return self.console.emit(&json::line(&summary)?);
         }
         self.console.note(summary.line());
         Ok(())
@@ -199,25 +244,6 @@ fn planes(path: &Path, view: Plane) -> Result<(&'static [Plane], u64), Failure> 
         // colours are written row by row, of others there is a picture, and one with a legend beside it
         Container::Png => (needed(view), if view == Plane::Colour { 0 } else { 24 }),
     })
-}
-
-/// Tells the bar, and asks whether to stop.
-struct Progress<'a> {
-    bar: ProgressBar,
-    cancelled: &'a (dyn Fn() -> bool + Sync),
-}
-
-impl Observer for Progress<'_> {
-    fn advance(&self, rays: u64, total: u64) {
-        if self.bar.length() != Some(total) {
-            self.bar.set_length(total);
-        }
-        self.bar.inc(rays);
-    }
-
-    fn is_cancelled(&self) -> bool {
-        (self.cancelled)()
-    }
 }
 
 /// Whether a failure is a rendering that was asked to stop.

@@ -1,6 +1,7 @@
 //! `zeroset render`: one picture, many frames, or again on every save.
 
 mod job;
+mod limited;
 mod summary;
 mod target;
 mod watch;
@@ -20,7 +21,10 @@ pub(crate) fn run(args: &Render, console: &Console) -> Result<(), Failure> {
         Some(frames) => run_frames(&job, frames.0.clone()),
         None => {
             let loaded = crate::scene::loaded(&args.scene, &job.options, console)?;
-            job.render(&loaded, &job.options, None, &interrupt::requested)
+            match job.render(&loaded, &job.options, None, &interrupt::requested)? {
+                Some(unfinished) => Err(unfinished),
+                None => Ok(()),
+            }
         }
     }
 }
@@ -28,7 +32,7 @@ pub(crate) fn run(args: &Render, console: &Console) -> Result<(), Failure> {
 /// Renders frame by frame; each loads the scene again at its own time.
 fn run_frames(job: &Job<'_>, frames: std::ops::Range<u32>) -> Result<(), Failure> {
     let start = Instant::now();
-    let count = frames.len();
+    let (count, mut unfinished) = (frames.len(), false);
     for frame in frames.clone() {
         if interrupt::requested() {
             return Err(Failure::silent(Exit::Interrupted));
@@ -40,16 +44,18 @@ fn run_frames(job: &Job<'_>, frames: std::ops::Range<u32>) -> Result<(), Failure
             job.console
                 .note("The scene does not use time(): all frames will be the same.");
         }
-        job.render(
-            &loaded,
-            &options,
-            Some((frame, &frames)),
-            &interrupt::requested,
-        )?;
+        let place = Some((frame, &frames));
+        if let Some(lack) = job.render(&loaded, &options, place, &interrupt::requested)? {
+            job.console.failure(&lack);
+            unfinished = true;
+        }
     }
     job.console.note(format_args!(
         "{count} frames in {:.1} s",
         start.elapsed().as_secs_f64()
     ));
+    if unfinished {
+        return Err(Failure::silent(Exit::Unfinished));
+    }
     Ok(())
 }

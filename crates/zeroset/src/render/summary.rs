@@ -32,6 +32,8 @@ pub(crate) struct Summary<'a> {
     pub(crate) rays_per_second: f64,
     pub(crate) evaluations: Evaluations,
     pub(crate) evaluations_per_ray: f64,
+    /// Share of the pixels that have all their rays: less than 1 where a time limit ended the picture.
+    pub(crate) finished: f64,
     pub(crate) settings: &'a Settings,
 }
 

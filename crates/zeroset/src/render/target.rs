@@ -1,6 +1,7 @@
 //! Where pictures go.
 
 use crate::failure::{Exit, Failure};
+use crate::file::default_name;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use zeroset_scene::film::Plane;
@@ -28,12 +29,14 @@ impl Container {
     }
 }
 
-/// The name of a picture that was given none.
-pub(crate) fn default_name(scene: &str, view: Plane) -> PathBuf {
-    match view {
-        Plane::Colour => format!("{scene}.png").into(),
-        _ => format!("{scene}-{}.png", view.name()).into(),
-    }
+/// The name of a picture that was given none; with a place for the number where it is one of many.
+pub(crate) fn unnamed(scene: &Path, view: Plane, many: bool) -> Result<PathBuf, Failure> {
+    let view = match view {
+        Plane::Colour => String::new(),
+        _ => format!("-{}", view.name()),
+    };
+    let number = if many { "-####" } else { "" };
+    default_name(scene, &format!("{view}{number}.png"))
 }
 
 /// The name of a frame: its number in place of the last `#`s of the file's name or, without any, before the ending.

@@ -2,24 +2,33 @@
 
 use super::job::{Job, was_cancelled};
 use crate::failure::{Exit, Failure};
-use crate::interrupt;
+use crate::interrupt::{self, Asking};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
+use std::time::{Duration, Instant};
+use zeroset_scene::load::Loaded;
 use zeroset_scene::watch::{PAUSE, Watched};
+
+/// A picture that a change outdated is left alone for as long as this, the first time in a row; then twice as long.
+const GRACE: Duration = Duration::from_millis(250);
+/// Changes that are farther apart than this are not in a row: a person saves again when something was seen.
+const ROW: Duration = Duration::from_secs(2);
 
 /// Renders until the user stops it. What is wrong with a save is said, and the next one is waited for.
 pub(crate) fn run(job: &Job<'_>) -> Result<(), Failure> {
     crate::scene::present(&job.args.scene)?;
+    let _asking = Asking::begin();
     let mut watched = Watched::of([job.args.scene.scene.clone()]);
+    let mut patience = Patience::default();
     loop {
         let files = match crate::scene::attempt(&job.args.scene, &job.options, job.console) {
             Ok(loaded) => {
                 watched = watched.with(loaded.files.clone());
-                match render_until_changed(job, &loaded, &watched) {
+                match render_until_changed(job, &loaded, &watched, &mut patience) {
                     // nobody reads standard output any more
                     Err(failure) if failure.exit == Exit::Done => return Ok(()),
                     Err(failure) => say(job, &failure),
-                    Ok(()) => {}
+                    Ok(unfinished) => unfinished.iter().for_each(|lack| say(job, lack)),
                 }
                 loaded.files
             }
@@ -30,10 +39,15 @@ pub(crate) fn run(job: &Job<'_>) -> Result<(), Failure> {
             }
         };
         watched = watched.with(files);
-        job.console.note(format_args!(
-            "Waiting for a change of {} (Ctrl-C ends)",
-            names(&watched)
-        ));
+        if interrupt::requested() {
+            return Ok(());
+        }
+        if !watched.changed() {
+            job.console.note(format_args!(
+                "Waiting for a change of {} (Ctrl-C ends)",
+                names(&watched)
+            ));
+        }
         while !watched.changed() {
             if interrupt::requested() {
                 return Ok(());
@@ -44,17 +58,38 @@ pub(crate) fn run(job: &Job<'_>) -> Result<(), Failure> {
     }
 }
 
+/// How long a rendering is left alone though it is outdated. A person who saves wants the new picture at once; of files
+/// that change all the time there would never be one.
+#[derive(Clone, Copy, Debug, Default)]
+struct Patience {
+    grace: Duration,
+}
+
+impl Patience {
+    /// After a rendering that was ended by a change so long after it began.
+    fn ended(&mut self, after: Duration) {
+        self.grace = if after < ROW.max(2 * self.grace) {
+            (2 * self.grace).max(GRACE)
+        } else {
+            Duration::ZERO
+        };
+    }
+}
+
 /// Renders, and gives up when a file changes meanwhile.
 fn render_until_changed(
     job: &Job<'_>,
-    loaded: &zeroset_scene::load::Loaded,
+    loaded: &Loaded,
     watched: &Watched,
-) -> Result<(), Failure> {
+    patience: &mut Patience,
+) -> Result<Option<Failure>, Failure> {
     let (done, outdated) = (AtomicBool::new(false), AtomicBool::new(false));
-    thread::scope(|scope| {
+    let (began, grace) = (Instant::now(), patience.grace);
+    let result = thread::scope(|scope| {
         let looking = scope.spawn(|| {
             while !done.load(Ordering::Relaxed) && !outdated.load(Ordering::Relaxed) {
-                outdated.store(watched.changed(), Ordering::Relaxed);
+                let is_late = began.elapsed() >= grace;
+                outdated.store(is_late && watched.changed(), Ordering::Relaxed);
                 thread::park_timeout(PAUSE);
             }
         });
@@ -63,12 +98,18 @@ fn render_until_changed(
         done.store(true, Ordering::Relaxed);
         looking.thread().unpark();
         result
-    })
+    });
+    if result.as_ref().is_err_and(was_cancelled) {
+        patience.ended(began.elapsed());
+    } else {
+        *patience = Patience::default();
+    }
+    result
 }
 
 fn say(job: &Job<'_>, failure: &Failure) {
-    if let (false, Some(report)) = (was_cancelled(failure), &failure.report) {
-        job.console.report(report.as_ref());
+    if !was_cancelled(failure) {
+        job.console.failure(failure);
     }
 }
 
@@ -82,5 +123,28 @@ fn names(watched: &Watched) -> String {
         [one] => one.to_string(),
         [first, rest @ ..] => format!("{first} and {} more", rest.len()),
         [] => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patience_grows_in_a_row_only() {
+        let (soon, late) = (Duration::from_millis(50), Duration::from_secs(60));
+        let mut patience = Patience::default();
+        let mut last = patience.grace;
+        for _ in 0..12 {
+            patience.ended(last + soon);
+            assert!(patience.grace > last);
+            last = patience.grace;
+        }
+        // any picture is finished in the end
+        assert!(last > Duration::from_secs(300));
+        let mut patience = Patience::default();
+        patience.ended(soon);
+        patience.ended(late);
+        assert_eq!(patience.grace, Duration::ZERO);
     }
 }

@@ -2,11 +2,15 @@
 
 mod backend;
 mod compare;
+mod exits;
 mod export;
 mod frames;
+mod hostile;
 mod language;
+mod limit;
 mod reference;
 mod render;
 mod run;
 mod usage;
 mod watch;
+mod writing;

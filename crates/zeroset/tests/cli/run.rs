@@ -60,7 +60,8 @@ impl Folder {
         command
             .current_dir(self.0.path())
             .args(arguments.split_whitespace())
-            .env_remove("NO_COLOR");
+            .env_remove("NO_COLOR")
+            .env_remove("CLICOLOR_FORCE");
         command
             .stdin(Stdio::null())
             .stdout(Stdio::piped())

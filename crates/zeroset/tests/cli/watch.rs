@@ -107,3 +107,57 @@ fn ctrl_c_ends_watching_and_a_save_ends_a_rendering() {
     );
     assert_eq!(watching.child.wait().unwrap().code(), Some(0));
 }
+
+/// A file that is written all the time, whole each time.
+#[test]
+fn files_that_never_rest_are_rendered() {
+    use std::sync::atomic::{AtomicBool, Ordering};
+    let folder = Folder::with(BALL);
+    let ended = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            for number in 0.. {
+                if ended.load(Ordering::Relaxed) {
+                    return;
+                }
+                folder.write(
+                    "scene.new",
+                    format!("{BALL}# {}\n", "x".repeat(number % 1000)),
+                );
+                std::fs::rename(folder.path("scene.new"), folder.path("scene.star")).unwrap();
+                std::thread::sleep(Duration::from_millis(20));
+            }
+        });
+        // a picture that takes longer than a file rests
+        let watching = Watching::start(&folder, "render scene.star --size 700x700 --watch");
+        for _ in 0..2 {
+            let said = watching.until("scene.png: 700x700");
+            assert!(!said.contains("Waiting"), "{said}");
+        }
+        ended.store(true, Ordering::Relaxed);
+    });
+}
+
+#[test]
+fn a_mended_file_is_taken_while_a_slow_picture_is_rendered() {
+    let slow = "show(sphere())\nrender(size = (512, 512), ao = hemisphere(4096), aa = supersample(4096))\n";
+    let folder = Folder::with(slow);
+    let watching = Watching::start(&folder, "render scene.star --watch");
+    for number in 0..3 {
+        std::thread::sleep(Duration::from_millis(700));
+        let began = std::time::Instant::now();
+        folder.write(
+            "scene.star",
+            format!("show(sphere())\nrender(size = (1{number}, 16))\n"),
+        );
+        watching.until(&format!("scene.png: 1{number}x16"));
+        // hours are left of the other picture
+        assert!(
+            began.elapsed() < Duration::from_secs(10),
+            "{:?}",
+            began.elapsed()
+        );
+        watching.until("Waiting");
+        folder.write("scene.star", slow);
+    }
+}
