@@ -14,6 +14,7 @@ mod reference;
 mod render;
 mod report;
 mod scene;
+mod survey;
 mod values;
 
 use args::{Command, CommandLine};

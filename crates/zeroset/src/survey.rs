@@ -32,6 +32,14 @@ pub(crate) fn around_camera(scene: &Scene) -> Option<&str> {
         .map(|o| o.name.as_str())
 }
 
+/// What is said of a camera that stands in an object of this name.
+pub(crate) fn inside_words(name: &str) -> String {
+    format!(
+        "the camera stands inside `{name}`: the picture shows it from within, lit as if there were no solid. Move `eye` out of it, or \
+         cut it open."
+    )
+}
+
 /// How many times less than the distance the marched value of a field is near its surface: the median over places that rays
 /// through its box find. `None` where they find none.
 pub(crate) fn looseness(field: &Field) -> Option<f64> {

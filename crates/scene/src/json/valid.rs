@@ -1,5 +1,6 @@
 //! What a scene's numbers may be: in whatever the language makes, in JSON that is read, and in a scene that is written.
 
+use zeroset_field::catalogue::{LARGE, SMALL};
 use super::write::degrees_of;
 use super::{Read, Step, problem};
 use crate::camera::{Camera, Lens};
@@ -16,7 +17,7 @@ const FAR: f32 = 1e12;
 /// Largest linear colour, intensity included.
 const BRIGHT: f32 = 1e12;
 /// Height of an orthographic view.
-pub(super) const HEIGHT: (f32, f32) = (1e-6, 1e6);
+pub(super) const HEIGHT: (f32, f32) = (SMALL as f32, LARGE as f32);
 /// How far the products of a camera's axes may be from those of right-angled ones.
 pub(super) const UPRIGHT: f64 = 1e-3;
 /// Objects, and materials, that a scene may have: they are numbered with 16 bits, from 1 on.
@@ -156,7 +157,7 @@ pub(super) fn material(material: &Material) -> Read<()> {
 
 fn pattern(pattern: &Pattern) -> Read<()> {
     let colours = |list: &[Vec3]| list.iter().try_for_each(|c| colour("colours", *c));
-    let scale = |x: f32| number("size", x, 1e-6, 1e6);
+    let scale = |x: f32| number("size", x, SMALL as f32, LARGE as f32);
     match pattern {
         Pattern::Solid { colour: c } => colour("colour", *c),
         Pattern::Checker { colours: c, size } => colours(c).and_then(|()| scale(*size)),
@@ -229,7 +230,7 @@ pub(super) fn sky(sky: &Sky) -> Read<()> {
 
 pub(super) fn occlusion(occlusion: &Occlusion, limits: &Limits) -> Read<()> {
     let most = limits.samples.min(1 << 20) as u32;
-    let length = |name: &str, x: f32| number(name, x, 1e-6, 1e6);
+    let length = |name: &str, x: f32| number(name, x, SMALL as f32, LARGE as f32);
     let far = |reach: Option<f32>| reach.map_or(Ok(()), |x| length("reach", x));
     let strength = |x: f32| number("scale", x, 0.0, 1000.0);
     let bend = |x: f32| number("bend", x, 0.0, 10.0);
@@ -280,7 +281,7 @@ pub(super) fn occlusion(occlusion: &Occlusion, limits: &Limits) -> Read<()> {
 pub(super) fn settings(settings: &Settings, limits: &Limits) -> Read<()> {
     check_size(settings.size, limits).map_err(|m| problem(m).at("size"))?;
     let march = match settings.march {
-        March::Fixed { step } => number("step", step, 1e-6, 1e6),
+        March::Fixed { step } => number("step", step, SMALL as f32, LARGE as f32),
         March::Sphere => Ok(()),
         March::Relaxed { omega } => number("omega", omega, 1.0, 1.99),
         March::Enhanced { share } => number("share", share, 0.1, 1.0),

@@ -9,6 +9,7 @@ use super::value::{Thing, Value};
 use crate::report::Place;
 use starlark_syntax::syntax::ast::BinOp;
 use std::sync::Arc;
+use zeroset_field::catalogue::{LARGE, SMALL};
 use zeroset_field::bounds::Aabb;
 use zeroset_field::field::Field;
 use zeroset_field::formula::{
@@ -142,7 +143,7 @@ fn bounds(c: &Call<'_, '_>) -> Run<Aabb> {
     let half = match c.get("size") {
         None => [2.0; 3],
         Some(given) if matches!(given.value, Value::Int(_) | Value::Float(_)) => {
-            [0.5 * c.ranged("size", given, 1e-6, 1e6)?; 3]
+            [0.5 * c.ranged("size", given, SMALL, LARGE)?; 3]
         }
         Some(given) => c.numbers::<3>("size", given)?.map(|x| 0.5 * x),
     };

@@ -6,6 +6,7 @@ use super::native::{Call, Native, slot};
 use super::value::Value;
 use crate::report::Report;
 use std::collections::HashMap;
+use zeroset_field::catalogue::{LARGE, SMALL};
 use zeroset_field::catalogue::entries::{Catalogue, catalogue};
 use zeroset_field::field::Field;
 use zeroset_field::placement::Placement;
@@ -57,14 +58,14 @@ fn lacking(missing: &[char]) -> Report {
 fn text(c: &mut Call<'_, '_>) -> Run<Value> {
     let given = c.need("text")?;
     let words = c.text("text", given)?;
-    let depth = c.number_or("depth", 0.2, 0.0, 1e6)?;
+    let depth = c.number_or("depth", 0.2, 0.0, LARGE)?;
     let aligns = [
         ("left", Align::Left),
         ("center", Align::Centre),
         ("right", Align::Right),
     ];
     let layout = Layout {
-        size: c.number_or("size", 1.0, 1e-6, 1e6)?,
+        size: c.number_or("size", 1.0, SMALL, LARGE)?,
         align: c.word_or("align", Align::Centre, &aligns)?,
         letter_spacing: c.number_or("spacing", 0.0, -1.0, 10.0)?,
         ..Layout::default()

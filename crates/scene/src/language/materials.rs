@@ -1,5 +1,6 @@
 //! Colours, patterns and materials.
 
+use zeroset_field::catalogue::{LARGE, SMALL};
 use super::mistake::{Run, mistake};
 use super::native::{Call, Given, Native, Slot, slot, spoken};
 use super::value::{Thing, Value};
@@ -294,7 +295,7 @@ fn pair(c: &Call<'_, '_>) -> Run<[Vec3; 2]> {
 }
 
 fn size(c: &Call<'_, '_>) -> Run<f32> {
-    Ok(c.number_or("size", 1.0, 1e-6, 1e6)? as f32)
+    Ok(c.number_or("size", 1.0, SMALL, LARGE)? as f32)
 }
 
 fn three(c: &Call<'_, '_>, names: [&str; 3], max: [f64; 3]) -> Run<[f64; 3]> {

@@ -4,7 +4,7 @@ use super::fields;
 use super::mistake::{Run, mistake};
 use super::native::{Call, Given, Native, Slot, slot};
 use super::value::{Thing, Value};
-use zeroset_field::catalogue::Dimension;
+use zeroset_field::catalogue::{Dimension, LARGE, SMALL};
 use zeroset_field::field::Paint;
 use zeroset_field::placement::Placement;
 use zeroset_field::repetition::{MAX_COPIES, Polar, Repetition};
@@ -27,7 +27,7 @@ pub(crate) const METHODS: &[Native] = &[
             slot("z", "0", "How far along z.")
         ],
         |c| {
-            let offset = coordinates(c, 1e6)?;
+            let offset = coordinates(c, LARGE)?;
             place(c, Placement::moved(offset))
         }
     ),
@@ -60,7 +60,7 @@ pub(crate) const METHODS: &[Native] = &[
         [slot("factor", "", "How many times larger; above 0.")],
         |c| {
             let given = c.need("factor")?;
-            let factor = c.ranged("factor", given, 1e-6, 1e6)?;
+            let factor = c.ranged("factor", given, SMALL, LARGE)?;
             place(c, Placement::scaled(factor))
         }
     ),
@@ -202,7 +202,7 @@ fn repeat(c: &mut Call<'_, '_>) -> Run<Value> {
     let plane = shape.facts().dimension == Dimension::Two;
     let one = |given: Given| matches!(given.value, Value::Int(_) | Value::Float(_));
     let each = |c: &Call<'_, '_>, param: &str, given: Given| -> Run<[f64; 3]> {
-        let mut numbers = each_axis(c, param, given, 0.0, 1e6)?;
+        let mut numbers = each_axis(c, param, given, 0.0, LARGE)?;
         if plane && one(given) {
             numbers[2] = 0.0;
         }

@@ -1,5 +1,6 @@
 //! How the scene is rendered: `render(...)` and the methods that it takes.
 
+use zeroset_field::catalogue::{LARGE, SMALL};
 use super::mistake::{Run, mistake};
 use super::native::{Call, Native, Slot, slot};
 use super::value::{Thing, Value};
@@ -129,7 +130,7 @@ pub(crate) const ALL: &[Native] = &[
         "Constant steps, then bisection.",
         [slot("step", "0.02", "Step, scene units.")],
         |c| {
-            let step = small(c, "step", 0.02, 1e-6, 1e6)?;
+            let step = small(c, "step", 0.02, SMALL, LARGE)?;
             march(c, March::Fixed { step })
         }
     ),
@@ -207,7 +208,7 @@ pub(crate) const ALL: &[Native] = &[
         |c| {
             let (steps, step, scale) = (
                 samples(c, "steps", 5)?,
-                small(c, "step", 0.1, 1e-6, 1e6)?,
+                small(c, "step", 0.1, SMALL, LARGE)?,
                 scale(c, 1.0)?,
             );
             occlusion(c, Occlusion::Quilez { steps, step, scale })
@@ -229,7 +230,7 @@ pub(crate) const ALL: &[Native] = &[
         |c| {
             let (steps, step, scale) = (
                 samples(c, "steps", 5)?,
-                small(c, "step", 0.1, 1e-6, 1e6)?,
+                small(c, "step", 0.1, SMALL, LARGE)?,
                 scale(c, 0.5)?,
             );
             let bend = small(c, "bend", 0.2, 0.0, 10.0)?;
@@ -257,7 +258,7 @@ pub(crate) const ALL: &[Native] = &[
             )
         ],
         |c| {
-            let (scale, step) = (scale(c, 1.0)?, small(c, "step", 0.1, 1e-6, 1e6)?);
+            let (scale, step) = (scale(c, 1.0)?, small(c, "step", 0.1, SMALL, LARGE)?);
             let bend = small(c, "bend", 0.5, 0.0, 10.0)?;
             occlusion(c, Occlusion::Evans { scale, step, bend })
         }
@@ -316,7 +317,7 @@ fn occlusion(c: &mut Call<'_, '_>, occlusion: Occlusion) -> Run<Value> {
 /// How far occlusion looks: to the end of the scene where nothing is said.
 fn reach(c: &Call<'_, '_>) -> Run<Option<f32>> {
     (c.get("reach"))
-        .map(|g| Ok(c.ranged("reach", g, 1e-6, 1e6)? as f32))
+        .map(|g| Ok(c.ranged("reach", g, SMALL, LARGE)? as f32))
         .transpose()
 }
 

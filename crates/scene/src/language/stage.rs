@@ -10,7 +10,7 @@ use crate::material::Material;
 use crate::scene::Object;
 use crate::settings::{Occlusion, Shadow};
 use glam::{DMat3, DQuat, DVec3, EulerRot, Vec3};
-use zeroset_field::catalogue::Dimension;
+use zeroset_field::catalogue::{Dimension, LARGE, SMALL};
 
 const GROUP: &str = "Stage";
 
@@ -83,7 +83,7 @@ pub(crate) const ALL: &[Native] = &[
         [slot("height", "", "Height of what it sees, scene units.")],
         |c| {
             let given = c.need("height")?;
-            let height = c.ranged("height", given, 1e-6, 1e6)?;
+            let height = c.ranged("height", given, SMALL, LARGE)?;
             c.machine.thing(Thing::Orthographic(height))
         }
     ),
@@ -148,8 +148,8 @@ impl Call<'_, '_> {
                     value: Value::Float(x),
                     ..given
                 },
-                -1e6,
-                1e6,
+                -LARGE,
+                LARGE,
             )?;
         }
         Ok(DVec3::from(p))
@@ -257,7 +257,7 @@ fn camera(c: &mut Call<'_, '_>) -> Run<Value> {
     };
     let far = c
         .get("far")
-        .map(|g| c.ranged("far", g, 1e-6, 1e9))
+        .map(|g| c.ranged("far", g, SMALL, 1e3 * LARGE))
         .transpose()?;
     let view = View {
         eye: point("eye")?,

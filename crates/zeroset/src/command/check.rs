@@ -6,6 +6,7 @@ use crate::estimate::{self, Cost};
 use crate::failure::{Exit, Failure};
 use crate::json;
 use crate::reference::shortest;
+use crate::survey;
 use serde::Serialize;
 use std::collections::{BTreeSet, HashSet};
 use std::fmt::Write;
@@ -32,9 +33,16 @@ struct Findings {
     instructions: Option<usize>,
     /// Whether every distance is proven never to be too large.
     proven: bool,
+    /// What single precision tells apart where the camera looks, and the width of a pixel there, where that is too coarse.
+    coarse: Option<(f64, f64)>,
+    /// The object that the camera stands in.
+    inside: Option<String>,
     /// What the picture will cost.
     cost: Cost,
 }
+
+/// A bound that is looser than this is worth a word.
+const LOOSE: f64 = 1.5;
 
 #[derive(Serialize)]
 struct ParameterFinding {
@@ -57,6 +65,8 @@ struct ObjectFinding {
     nodes: u64,
     /// What its distance rests on without a proof.
     unproven: Vec<String>,
+    /// How many times less than the distance the marched value is near its surface, where that is not about one.
+    looseness: Option<f64>,
 }
 
 /// Checks a scene, and says what is known about it.
@@ -99,6 +109,7 @@ fn findings(loaded: &Loaded, program: Option<&Program>, cost: Cost) -> Findings 
                 bounds: corners(&facts.bounds),
                 nodes: facts.nodes,
                 unproven: unproven(&object.field),
+                looseness: survey::looseness(&object.field).filter(|loose| *loose > LOOSE),
             }
         })
         .collect();
@@ -128,6 +139,8 @@ fn findings(loaded: &Loaded, program: Option<&Program>, cost: Cost) -> Findings 
         parameters: parameters.collect(),
         proven: objects.iter().all(|o| o.unproven.is_empty()),
         objects,
+        coarse: survey::coarse(scene),
+        inside: survey::around_camera(scene).map(str::to_owned),
         cost,
         instructions: program.map(|p| p.structure().values.instructions.len()),
     }
@@ -243,6 +256,30 @@ fn words(findings: &Findings) -> String {
             o.unproven.join(", ")
         );
     }
+    for o in &findings.objects {
+        if let Some(loose) = o.looseness {
+            let _ = writeln!(
+                out,
+                "Loose: the slope that {} is divided by is {} times that of its surface. The picture is the same; rays take about \
+                 that many more steps. A smaller `slope = ...` that still holds, a smaller `size`, or a formula nearer to a distance is \
+                 faster.",
+                name(&o.name),
+                digits(loose, 2),
+            );
+        }
+    }
+    if let Some(object) = &findings.inside {
+        out.push_str(&survey::inside_words(&name(object)));
+        out.push('\n');
+    }
+    if let Some((grain, pixel)) = findings.coarse {
+        let _ = writeln!(
+            out,
+            "Coarse: this far from the origin single precision tells apart {}, and a pixel is {} wide. Move the scene towards the origin.",
+            digits(grain, 2),
+            digits(pixel, 2),
+        );
+    }
     if let Some(instructions) = findings.instructions {
         let _ = writeln!(
             out,
@@ -259,11 +296,22 @@ fn name(from: &str) -> String {
 }
 
 fn spoken([min, max]: &[[Option<f64>; 3]; 2]) -> String {
-    let number = |x: Option<f64>, none: &str| {
-        x.map_or(none.to_owned(), |x| shortest((x * 1e3).round() / 1e3))
-    };
+    let number = |x: Option<f64>, none: &str| x.map_or(none.to_owned(), |x| digits(x, 4));
     let corner = |corner: &[Option<f64>; 3], none| corner.map(|x| number(x, none)).join(", ");
     format!("({}) to ({})", corner(min, "-inf"), corner(max, "inf"))
+}
+
+/// A number with so many digits that count, whatever its size.
+fn digits(x: f64, count: i32) -> String {
+    if x == 0.0 || !x.is_finite() {
+        return shortest(x);
+    }
+    let unit = 10_f64.powi(x.abs().log10().floor() as i32 + 1 - count);
+    // a whole number of units, printed without the rounding of their product
+    let rounded = (x / unit).round() * unit;
+    format!("{rounded:.*e}", (count - 1).max(0) as usize)
+        .parse()
+        .map_or_else(|_| shortest(rounded), shortest)
 }
 
 fn plural(count: usize) -> &'static str {

@@ -10,6 +10,7 @@ use crate::failure::{Exit, Failure};
 use crate::file::{Progress, no_link, write_watched};
 use crate::interrupt::Asking;
 use crate::json;
+use crate::survey;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -93,6 +94,9 @@ impl<'a> Job<'a> {
             .check_picture(scene.settings.size, planes, copies)
             .map_err(|e| Failure::new(Exit::Scene, e.to_string()))?;
         probe(&path)?;
+        if let Some(name) = survey::around_camera(&scene) {
+            self.console.note(survey::inside_words(name));
+        }
         let progress = Progress {
             bar: self.console.bar(&label),
             cancelled,
