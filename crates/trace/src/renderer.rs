@@ -8,7 +8,7 @@ use fearless_simd::{Level, dispatch};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 use zeroset_field::bounds::Aabb;

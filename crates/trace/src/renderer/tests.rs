@@ -56,11 +56,11 @@ fn slow() -> Vec<(&'static str, Scene)> {
         scale: 1.0,
         bend: 0.1,
     };
-    let cones = Occlusion::Cones { reach, steps: 4096 };
-    let hemisphere = Occlusion::Hemisphere { rays: 4096, reach };
+    let cones = Occlusion::Cones { reach: Some(reach), steps: 4096 };
+    let hemisphere = Occlusion::Hemisphere { rays: 4096, reach: Some(reach) };
     let obscurance = Occlusion::Obscurance {
         rays: 4096,
-        reach,
+        reach: Some(reach),
         tau: 1.0,
     };
     let fixed = March::Fixed { step: 1e-4 };
@@ -105,7 +105,7 @@ fn every_evaluation_is_asked_for_before() {
             Occlusion::Hemisphere { reach, .. } => Occlusion::Hemisphere { rays: 3, reach },
             Occlusion::Obscurance { reach, tau, .. } => Occlusion::Obscurance {
                 rays: 3,
-                reach,
+                reach: Some(reach),
                 tau,
             },
             Occlusion::Cones { reach, .. } => Occlusion::Cones { reach, steps: 3 },
