@@ -38,7 +38,7 @@ fn slow() -> Vec<(&'static str, Scene)> {
         settings(&mut scene.settings);
         scene
     };
-    let reach = 1e3;
+    let reach = Some(1e3);
     let mut lit = with(&|_| {});
     lit.lights = vec![lit.lights[0]; 4096];
     let samples = Antialias::Supersample {
