@@ -1,7 +1,7 @@
 use super::*;
 use crate::bench::sphere_box_ground;
 use crate::stop::INTERVAL;
-use std::sync::atomic::AtomicU64;
+use std::sync::atomic::{AtomicU64, Ordering};
 use zeroset_field::eval::BATCH;
 use zeroset_scene::render::Silent;
 use zeroset_scene::settings::{Filter, March, Normals, Settings};
@@ -56,11 +56,11 @@ fn slow() -> Vec<(&'static str, Scene)> {
         scale: 1.0,
         bend: 0.1,
     };
-    let cones = Occlusion::Cones { reach: Some(reach), steps: 4096 };
-    let hemisphere = Occlusion::Hemisphere { rays: 4096, reach: Some(reach) };
+    let cones = Occlusion::Cones { reach, steps: 4096 };
+    let hemisphere = Occlusion::Hemisphere { rays: 4096, reach };
     let obscurance = Occlusion::Obscurance {
         rays: 4096,
-        reach: Some(reach),
+        reach,
         tau: 1.0,
     };
     let fixed = March::Fixed { step: 1e-4 };
@@ -105,7 +105,7 @@ fn every_evaluation_is_asked_for_before() {
             Occlusion::Hemisphere { reach, .. } => Occlusion::Hemisphere { rays: 3, reach },
             Occlusion::Obscurance { reach, tau, .. } => Occlusion::Obscurance {
                 rays: 3,
-                reach: Some(reach),
+                reach,
                 tau,
             },
             Occlusion::Cones { reach, .. } => Occlusion::Cones { reach, steps: 3 },
