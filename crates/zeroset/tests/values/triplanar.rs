@@ -28,7 +28,7 @@ pub const CHECKS: [Check; 4] = [
 ];
 
 /// An image that looks like no turned or mirrored copy of itself: sRGB, row by row from the top left.
-const IMAGE: [[[u8; 3]; 4]; 3] = [
+static IMAGE: [[[u8; 3]; 4]; 3] = [
     [[255, 0, 0], [0, 255, 0], [0, 0, 255], [30, 30, 30]],
     [[255, 255, 0], [128, 128, 128], [255, 0, 255], [200, 60, 10]],
     [[0, 80, 160], [250, 250, 250], [90, 0, 40], [0, 255, 255]],
