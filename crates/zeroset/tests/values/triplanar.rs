@@ -90,7 +90,7 @@ fn faces(draw: Draw) -> Found {
     let size = 1.7;
     let text = format!("show(box(4), triplanar(\"image.png\", size = {size}))");
     for (from, up) in FACES {
-        let eye = Eye::straight(from, up, DVec3::ZERO, 3.4);
+        let eye = Eye::straight(from, up, DVec3::ZERO, 2.8);
         let film = draw(&with_image(&rows(), &text, &eye));
         let right = |x, y| {
             let q = eye.on_plane(x, y) / size;
