@@ -236,7 +236,7 @@ fn blocks(b: &mut Bytes<'_>, text: &mut String) {
     let mut depth = 0;
     for _ in 0..=b.next() % 3 {
         let block = b.of(&BLOCKS);
-        for _ in 0..b.times().min(400) {
+        for _ in 0..b.times().min(150) {
             let _ = writeln!(text, "{}{block}", " ".repeat(depth));
             depth += 1;
         }

@@ -68,7 +68,9 @@ fn all(words: &[&str], at: &mut usize, allowed: &dyn Fn(&str) -> bool) -> bool {
 }
 
 fn one(words: &[&str], at: &mut usize, allowed: &dyn Fn(&str) -> bool) -> bool {
-    let word = words.get(*at).copied().unwrap_or_default();
+    let Some(&word) = words.get(*at) else {
+        return false;
+    };
     *at += 1;
     if word == "(" {
         let met = any(words, at, allowed);

@@ -27,11 +27,11 @@ pub const CHECKS: [Check; 4] = [
     },
     Check {
         name: "a soft shadow",
-        run: |draw| soft(draw, "soft", [0.97, 1.12], [0.99, 1.03]),
+        run: |draw| soft(draw, "soft", [0.98, 1.08], [0.99, 1.05]),
     },
     Check {
         name: "a soft shadow without bands",
-        run: |draw| soft(draw, "soft_closest", [0.84, 1.12], [0.97, 1.035]),
+        run: |draw| soft(draw, "soft_closest", [0.85, 1.12], [0.975, 1.06]),
     },
 ];
 
@@ -69,7 +69,7 @@ fn hard(draw: Draw, line: &str, to: fn(DVec3) -> DVec3) -> Found {
         }
     }
     assert!(
-        bright > 200 && dark > 50,
+        bright > 200 && dark > 20,
         "{bright} and {dark} pixels show little"
     );
     compare(&film, &eye, Plane::Shadow, 0.0, right)
@@ -91,9 +91,10 @@ fn penumbra(p: DVec3) -> f64 {
         .max(0.0)
 }
 
-/// Samples along the way find nearly the least; what is taken for the closest place between two of them is on average right.
-/// (Were it put behind the second sample and not before it, it would be a tenth too dark on average.) `each` and `mean` are
-/// bounds of the found light over the right one.
+/// Samples along the way find nearly the least. What is taken for the closest place between two of them is in single pixels up
+/// to a tenth too dark, on average right: in double precision, whatever the first sample, 0.89 to 1.09 of the right light and
+/// 0.99 to 1.05 on average. (Were it put behind the second sample and not before it, some pixels would have less than 0.8.)
+/// `each` and `mean` are bounds of the found light over the right one.
 fn soft(draw: Draw, name: &str, each: [f64; 2], mean: [f64; 2]) -> Found {
     let eye = Eye {
         at: DVec3::new(0.0, 6.0, 8.0),

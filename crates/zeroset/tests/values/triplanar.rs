@@ -28,7 +28,7 @@ pub const CHECKS: [Check; 4] = [
 ];
 
 /// An image that looks like no turned or mirrored copy of itself: sRGB, row by row from the top left.
-const IMAGE: [[[u8; 3]; 4]; 3] = [
+static IMAGE: [[[u8; 3]; 4]; 3] = [
     [[255, 0, 0], [0, 255, 0], [0, 0, 255], [30, 30, 30]],
     [[255, 255, 0], [128, 128, 128], [255, 0, 255], [200, 60, 10]],
     [[0, 80, 160], [250, 250, 250], [90, 0, 40], [0, 255, 255]],
@@ -90,7 +90,7 @@ fn faces(draw: Draw) -> Found {
     let size = 1.7;
     let text = format!("show(box(4), triplanar(\"image.png\", size = {size}))");
     for (from, up) in FACES {
-        let eye = Eye::straight(from, up, DVec3::ZERO, 3.4);
+        let eye = Eye::straight(from, up, DVec3::ZERO, 2.8);
         let film = draw(&with_image(&rows(), &text, &eye));
         let right = |x, y| {
             let q = eye.on_plane(x, y) / size;
