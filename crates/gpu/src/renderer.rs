@@ -20,8 +20,8 @@ use zeroset_shader::{FieldForm, Job, Shaders};
 /// The GPU's renderer.
 ///
 /// Shaders, buffers and what is known about their speed are kept from picture to picture; pictures of several threads are
-/// rendered one after the other. Where the device ends loops early, rays are traced in turns. Where memory runs out, a picture is rendered in smaller bands; where the device is lost,
-/// it is opened anew, once a picture. What remains is an error, and the renderer can be asked again.
+/// rendered one after the other. Where the device ends loops early, rays are traced in turns; where memory runs out, a picture
+/// is rendered in smaller bands; where the device is lost, it is opened anew, once a picture. What remains is an error, and the renderer can be asked again.
 ///
 /// ```
 /// use zeroset_gpu::{Choice, GpuRenderer};
