@@ -5,7 +5,7 @@ use crate::catalogue::entries::catalogue;
 use crate::catalogue::{Dimension, Stretch};
 use crate::field::{Field, Node, Paint};
 use crate::formula::{Binary, Formula, Step};
-use crate::op::code;
+use crate::op::{code, recorded};
 use crate::placement::Placement;
 use crate::program::{Code, CompileError, Instruction, Limits, Operation, Program, Structure};
 use crate::repetition::{Polar, Repetition};
@@ -119,6 +119,12 @@ impl Lowering<'_> {
         point: u32,
         params: &[f64],
     ) -> Result<u32, CompileError> {
+        // a point that is not read would keep its register up to here: one a step in a chain of moves and roundings
+        let point = if recorded::reads_point(code) {
+            point
+        } else {
+            INPUT
+        };
         self.emit(Operation::Change(code), value, point, params)
     }
 

@@ -47,7 +47,7 @@ pub struct Instruction {
     pub out: u16,
     /// First operand: a point for a leaf or a warp, otherwise a value.
     pub a: u16,
-    /// Second operand: the point of a change, the second value of a pair.
+    /// Second operand: the point of a change (register 0 where it is not read), the second value of a pair.
     pub b: u16,
     /// Where its parameters begin.
     pub at: u32,

@@ -491,3 +491,17 @@ fn boxes_hold_what_grows_from_bounds() {
     }
     assert!(grow(&stretched, 0.5).facts().bounds.max[0] < 4.6);
 }
+
+#[test]
+fn a_chain_of_moves_and_roundings_takes_two_points() {
+    let round = catalogue().modifier("round").unwrap();
+    let mut chain = primitive("sphere", &[0.5]);
+    for _ in 0..100 {
+        chain = chain.modify(round, vec![0.001]).unwrap();
+        chain = moved(&chain, 0.001, 0.0, 0.0);
+    }
+    let program = compiled(&chain);
+    // the point that is asked for, two in turns, and a value or two
+    assert!(program.structure().values.registers <= 3 * 3 + 2);
+    assert!((value(&program, [2.1, 0.0, 0.0]) - 1.4).abs() < 1e-4);
+}

@@ -6,6 +6,7 @@ use crate::catalogue::*;
 use crate::number::{Args, Argument, Dual, Expr, Function, Ops, Real, Recorder};
 use crate::op::*;
 use crate::program::Operation;
+use std::sync::LazyLock;
 
 /// What a recorded function takes and gives. All take `at` last: where the operation's parameters begin.
 ///
@@ -80,6 +81,23 @@ pub fn function(operation: Operation, form: Form) -> Option<Function> {
     let arguments = [arguments, &[("at", Argument::Offset)]].concat();
     let function = recorder.function(&name, &arguments, &results);
     Some(function.expect("operations use their own arguments and no constant that is no number"))
+}
+
+/// Whether a change needs the point, beside the value. What does not need it does not keep it alive either.
+pub(crate) fn reads_point(code: u16) -> bool {
+    static READS: LazyLock<Vec<bool>> = LazyLock::new(|| {
+        let reads = |entry: &Entry| {
+            let recorder = Recorder::new();
+            let Some((_, results)) = (entry.record)(&recorder, Form::Value) else {
+                return true;
+            };
+            // without the point among its arguments, a function that uses it cannot be made
+            let arguments = [("d", Argument::Number), ("at", Argument::Offset)];
+            recorder.function("change", &arguments, &results).is_err()
+        };
+        CHANGES.iter().map(reads).collect()
+    });
+    READS.get(usize::from(code)).is_none_or(|reads| *reads)
 }
 
 type Arguments = &'static [(&'static str, Argument)];
