@@ -306,7 +306,7 @@ fn of_scripts_at_the_edges() {
         "show(box(1).twist(1e-9))",
         "show(formula(\"x*1e30 + 1e-300\", slope = 1e30, bounds = box(1e3)))",
     ] {
-        let text = format!("{script}\nshow(sphere(), name = \"\\u{{1}}\\u{{202e}}\\\"\")");
+        let text = format!("{script}\nshow(sphere(), name = \"\\x01\\u202e\\\"\")");
         match load_text(
             "edge.star",
             &text,

@@ -8,8 +8,10 @@ use std::fmt;
 
 /// Bytes of a value in a list, which may be half as large again as what it holds while it grows.
 const ITEM: u64 = 2 * size_of::<Value>() as u64;
+/// Bytes of an object beside its members, but for the room for more of them.
+const OBJECT: u64 = 256;
 /// Bytes of a member of an object beside its key.
-const MEMBER: u64 = ITEM + 128;
+const MEMBER: u64 = ITEM + 64;
 /// Bytes of a text beside its own.
 const TEXT: u64 = 32;
 /// Values between two looks at the clock.
@@ -115,6 +117,7 @@ impl<'de> Visitor<'de> for Strict<'_, '_> {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut members: A) -> Result<Value, A::Error> {
+        self.0.charge::<A::Error>(OBJECT)?;
         let mut out = Map::new();
         while let Some(key) = members.next_key::<String>()? {
             if out.contains_key(&key) {
