@@ -215,7 +215,7 @@ fn check_nesting(file: u32, text: &str, limits: &Limits) -> Run<()> {
         // a block is a statement in a list of statements
         if chain + 2 * blocks > MAX_TOKENS {
             return Err(mistake(format!(
-                "this expression has more than {MAX_TOKENS} words and signs inside each other"
+                "this expression is too long: more than {MAX_TOKENS} words and signs inside each other"
             ))
             .help("give parts of it names first, or use a list")
             .at(place));
