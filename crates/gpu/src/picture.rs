@@ -113,7 +113,7 @@ impl Bench<'_> {
             };
             let rows = room.band(job, first, &planes, &self.gpu.info().title())?;
             let counters = self.band(job, [first, rows], &planes, film, progress, timings)?;
-            let [pairs, _] = counters.as_chunks::<2>();
+            let (pairs, _) = counters.as_chunks::<2>();
             for (sum, [low, high]) in sums.iter_mut().zip(pairs) {
                 *sum += u64::from(*low) | u64::from(*high) << 32;
             }

@@ -83,7 +83,7 @@ fn slopes() {
         formula.slope()
     );
     assert_eq!(formula.bounds().max, [1.5; 3]);
-    let text = to_text(&expand(&loaded.scene));
+    let text = to_text(&expand(&loaded.scene).unwrap());
     let again = load_text(
         "scene.json",
         &text,
@@ -96,7 +96,7 @@ fn slopes() {
         panic!("a formula")
     };
     assert_eq!(formula, other);
-    assert_eq!(text, to_text(&expand(&again.scene)));
+    assert_eq!(text, to_text(&expand(&again.scene).unwrap()));
     // a function of the script's own, with everything that a script may do
     let text = "
 def waves(p, n):

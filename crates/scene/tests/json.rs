@@ -306,7 +306,7 @@ fn of_scripts_at_the_edges() {
         "show(box(1).twist(1e-9))",
         "show(formula(\"x*1e30 + 1e-300\", slope = 1e30, bounds = box(1e3)))",
     ] {
-        let text = format!("{script}\nshow(sphere(), name = \"\\u{1}\\u{202e}\\\"\")");
+        let text = format!("{script}\nshow(sphere(), name = \"\\u{{1}}\\u{{202e}}\\\"\")");
         match load_text(
             "edge.star",
             &text,
@@ -389,7 +389,7 @@ fn damaged(numbers: &[(u8, f32)], wide: f64, turn: [f64; 3]) -> Scene {
             13 => scene.settings.exposure = x,
             14 => scene.settings.footprint = x,
             15 => scene.settings.march = March::Relaxed { omega: x },
-            16 => scene.objects[0].occlusion = Some(Occlusion::Hemisphere { rays: 3, reach: x }),
+            16 => scene.objects[0].occlusion = Some(Occlusion::Hemisphere { rays: 3, reach: Some(x) }),
             17 => scene.materials[material].roughness = x,
             18 => scene.materials[material].emission.x = x,
             19 => scene.materials[material].shininess = x,

@@ -104,6 +104,10 @@ impl<'a> Job<'a> {
             }
             self.aim(area, index, q);
             self.trace(s, &solid, area, index, q);
+            if stop.is_set() {
+                // what was found is not all: it must not reach the pixels of the tiles around
+                break;
+            }
             hits += q.hits.count as u64;
             self.gather(s, area, q);
             if let Some((_, filter)) = self.samples {

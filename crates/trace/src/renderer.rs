@@ -8,7 +8,7 @@ use fearless_simd::{Level, dispatch};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 use zeroset_field::bounds::Aabb;
@@ -304,15 +304,11 @@ impl<'a> Run<'a> {
 
     fn all(&self, film: &mut Film) -> Done {
         let mut bands = bands(film);
-        let done: Done = if self.job.is_filtered() {
-            self.filtered(&mut bands)
-        } else {
-            (0..Area::count(self.size))
-                .into_par_iter()
-                .map(|k| self.tile(k, &mut [], &bands))
-                .sum()
-        };
-        done
+        if self.job.is_filtered() {
+            return self.filtered(&mut bands);
+        }
+        let tiles = (0..Area::count(self.size)).into_par_iter();
+        tiles.map(|k| self.tile(k, &mut [], &bands)).sum()
     }
 
     /// Renders all tiles, some rows of them at a time so that their sums take limited memory, and filters what is complete.

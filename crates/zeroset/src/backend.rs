@@ -131,13 +131,8 @@ impl<'a> Engine<'a> {
         }
         #[cfg(not(feature = "gpu"))]
         let _ = (restart, self.console);
-        let renderer = self.cpu()?;
-        let picture = renderer.prepare(scene)?;
-        let [width, height] = scene.settings.size;
-        // a plane that nobody looks at takes gigabytes of a large picture
-        let mut film = Film::with(width, height, planes);
-        let statistics = renderer.render_into(&picture, &mut film, observer)?;
-        Ok((Frame { film, statistics }, Used::Cpu))
+        let frame = self.cpu()?.render_planes(scene, planes, observer)?;
+        Ok((frame, Used::Cpu))
     }
 
     /// As [`Engine::render`], and keeps what is finished when the observer ends it; `None` where nothing is kept.

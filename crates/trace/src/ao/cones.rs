@@ -189,7 +189,7 @@ fn touch<S: Simd>(s: S, solid: &Solid<'_>, far: f32, range: Range<usize>, q: &mu
             next += S::f32s::LEN;
         }
         let count = q.beams.count;
-        if count == 0 {
+        if count == 0 || solid.stop.is_set() {
             break;
         }
         look(s, solid, q);
@@ -291,7 +291,7 @@ fn march<S: Simd>(
             start(s, solid, cone, next..range.end, iteration, q);
             next += S::f32s::LEN;
         }
-        if q.beams.count == 0 {
+        if q.beams.count == 0 || solid.stop.is_set() {
             break;
         }
         look(s, solid, q);

@@ -432,3 +432,28 @@ fn scale_does_not_matter() {
         assert!(off < 3 * 64 * 64 / 100, "{k}: {off} numbers differ");
     }
 }
+
+/// A constant that a field is divided by changes how rays step, and nothing that is shown.
+#[test]
+fn a_stated_slope_changes_no_light() {
+    let picture = |shape: &str| {
+        let text = format!(
+            "show({shape}.move(y = 1))\nshow(plane())\nsun(direction = (-1, -2, -1), shadow = soft(8))\ncamera(eye = (2, 3, 5), target = (0, 0.8, 0), fov = 40)"
+        );
+        let mut scene = written(&text, 64);
+        scene.settings.occlusion = zeroset_scene::settings::Settings::default().occlusion;
+        stream(&scene)
+    };
+    let right = picture("sphere(1)");
+    let formula = |slope: &str| format!("field(lambda p: length(p) - 1, size = 4{slope})");
+    for shape in [formula(""), formula(", slope = 5"), formula(", slope = 30")] {
+        let film = picture(&shape);
+        for plane in [Plane::Occlusion, Plane::Shadow, Plane::Colour] {
+            let (a, b) = (film.plane(plane), right.plane(plane));
+            let off = a.iter().zip(b).map(|(x, y)| f64::from((x - y).abs())).sum::<f64>();
+            let mean = off / a.len() as f64;
+            eprintln!("{shape} {plane:?}: {mean}");
+            assert!(mean < 0.02, "{shape}: {plane:?} is off by {mean} in the mean");
+        }
+    }
+}

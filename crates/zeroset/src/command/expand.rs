@@ -16,7 +16,8 @@ pub(crate) fn run(args: &Expand, console: &Console) -> Result<(), Failure> {
     let options = crate::scene::options(&args.scene, None)?;
     let loaded = crate::scene::loaded(&args.scene, &options, console)?;
     let written = expand(&loaded.scene).map_err(|e| Failure::new(Exit::Scene, e.to_string()))?;
-    let text = display::json(&to_text(&written));
+    let text = to_text(&written);
+    let text = display::json(&text);
     match &args.output {
         None => console.emit(&text),
         Some(path) => write_text(path, &text),

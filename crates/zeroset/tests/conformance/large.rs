@@ -81,7 +81,7 @@ fn a_scene_of_2000_parts_is_the_same_on_the_gpu() {
     sampled.settings.size = [16, 12];
     sampled.settings.occlusion = Occlusion::Hemisphere {
         rays: 12,
-        reach: 1.0,
+        reach: Some(1.0),
     };
     let right = reference(&sampled);
     none(

@@ -24,7 +24,7 @@ use zeroset::scene::film::Film;
 use zeroset::scene::render::{Renderer, Silent};
 use zeroset::scene::scene::Scene;
 use zeroset::trace::CpuRenderer;
-use zeroset::trace::plain::{self, Compiled};
+use zeroset::trace::plain::{self, Compiled, Quality};
 
 /// Every check.
 fn checks() -> Vec<Check> {
@@ -52,7 +52,8 @@ fn on(renderer: &dyn Renderer, scene: &Scene) -> Film {
 fn on_plain(renderer: &CpuRenderer, scene: &Scene) -> Film {
     let picture = renderer.prepare(scene).expect("a program");
     let program = picture.program();
-    plain::render(scene, &program.bounds(), || Compiled::new(program, None))
+    let quality = Quality::of(program, scene.settings.max_steps);
+    plain::render(scene, &quality, || Compiled::new(program, None))
 }
 
 /// All checks with one renderer.

@@ -3,7 +3,7 @@
 use crate::known::{Check, Draw, Eye, FACES, Found, Lens, SIZE, compare, light, rgb, scene, value};
 use glam::{DVec2, DVec3};
 use zeroset::field::catalogue::noise::gradient_noise;
-use zeroset::field::number::v3;
+use zeroset::field::number::{F64, v3};
 use zeroset::scene::film::Plane;
 
 pub const CHECKS: [Check; 8] = [
@@ -170,7 +170,7 @@ fn clouds(p: DVec3, pixel: f64, size: f64, octaves: u32) -> f64 {
     let (mut p, mut share, mut sum, mut total) = (p / size, 1.0, 0.0, 0.0);
     for k in 0..octaves {
         let seen = (1.0 - 2.0 * footprint).max(0.0);
-        sum += share * seen * gradient_noise(v3(p.x, p.y, p.z));
+        sum += share * seen * gradient_noise(v3(F64(p.x), F64(p.y), F64(p.z))).0;
         total += share;
         p = DVec3::new(0.8 * p.y + 0.6 * p.z, p.x, 0.6 * p.y - 0.8 * p.z) * 2.0
             + DVec3::new(0.37, 0.61, 0.13 + f64::from(k));

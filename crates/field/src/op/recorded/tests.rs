@@ -166,6 +166,8 @@ fn evaluate(operation: Operation, params: &[f32], p: Vec3<Dual<f32>>) -> Vec<Dua
                 params: params.into(),
                 bounds: Aabb::EMPTY,
                 exactness: Exactness::Bound,
+                steep: false,
+                slope: 1.0,
             };
             eval::Point::new(&program).value(p)
         })
