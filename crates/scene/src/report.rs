@@ -176,6 +176,11 @@ impl SourceCode for Source {
                 1,
             )));
         }
+        // characters, as in `Report::position`: what is read here counts bytes
+        let column = match column {
+            0 => 0,
+            _ => self.position(floor_char(&self.text, shown.offset())).1 - 1,
+        };
         Ok(Box::new(MietteSpanContents::new_named(
             self.name.clone(),
             data,

@@ -46,7 +46,7 @@ fn forms() -> Vec<(&'static str, fn(usize) -> String)> {
         ("and", |n| around(n, "True and ", "")),
         ("or", |n| around(n, "", " or 1")),
         ("conditionals", |n| around(n, "0 if n < 0 else ", "")),
-        ("conditions", |n| around(n, "1 if ", " else 0")),
+        ("conditions", |n| around(n, "(1 if (", ") else 0)")),
         ("lists", |n| around(n, "[", "]")),
         ("lists and indices", |n| around(n, "[", "][0]")),
         ("tuples", |n| around(n, "(", ",)")),
@@ -274,11 +274,10 @@ fn texts_that_nest_deeply() {
             // ends, in whatever way
             let result = load(&text, limits);
             if let Err(failed) = result {
-                assert!(
-                    failed.report.position().is_some(),
-                    "{name}: {}",
-                    failed.report
-                );
+                // a text may also be more than there is memory for, as a whole
+                let report = &failed.report;
+                let whole = report.message().contains("memory");
+                assert!(whole || report.position().is_some(), "{name}: {report}");
             }
         }
     }

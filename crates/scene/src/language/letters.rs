@@ -100,8 +100,8 @@ impl<'t> Letters<'t> {
 }
 
 fn too_many() -> Box<Mistake> {
-    mistake("this file has too many different names with letters beyond ASCII")
-        .help("use lists or dicts in place of so many names")
+    mistake("this file has too many letters beyond ASCII outside of its texts and comments")
+        .help("use shorter names, or lists and dicts in place of so many names")
 }
 
 /// First byte and end of every name that holds a letter beyond ASCII.
@@ -117,16 +117,17 @@ fn spans(text: &str) -> Result<Vec<(usize, usize)>, (usize, Box<Mistake>)> {
     while let Some(token) = lexer.next() {
         let Err(error) = token else { continue };
         let error = error.into_error();
+        refused += 1;
         let Some(at) = error.span().map(|s| s.span.begin().get() as usize) else {
             continue;
         };
+        // each costs the lexer a message, be it in a name that is known already
+        if refused > MOST {
+            return Err((at, too_many()));
+        }
         let letter = text.get(at..).and_then(|rest| rest.chars().next());
         if at < seen || !letter.is_some_and(|c| !c.is_ascii() && is_xid_continue(c)) {
             continue;
-        }
-        refused += 1;
-        if refused > MOST {
-            return Err((at, too_many()));
         }
         let within = |c: char| is_xid_continue(c);
         let before = text[..at].char_indices().rev();

@@ -125,13 +125,13 @@ fn instead(message: &str) -> Option<&'static str> {
         ),
         ("\u{b2}\u{b3}", "write pow(x, 2) for a power"),
     ];
+    if message.contains("'**'") {
+        return Some("write pow(x, 2) for a power");
+    }
     let word = message.split('`').nth(1)?;
     if message.starts_with("invalid input") {
         let sign = word.chars().next()?;
         return SIGNS.iter().find(|s| s.0.contains(sign)).map(|s| s.1);
-    }
-    if message.contains("`**`") && !message.contains("argument") {
-        return Some("write pow(x, 2) for a power");
     }
     if !message.contains("reserved keyword") {
         return None;
@@ -215,7 +215,7 @@ fn check_nesting(file: u32, text: &str, limits: &Limits) -> Run<()> {
         // a block is a statement in a list of statements
         if chain + 2 * blocks > MAX_TOKENS {
             return Err(mistake(format!(
-                "this expression has more than {MAX_TOKENS} words and signs inside each other"
+                "this expression is too long: more than {MAX_TOKENS} words and signs inside each other"
             ))
             .help("give parts of it names first, or use a list")
             .at(place));

@@ -34,7 +34,7 @@ impl<'a> Machine<'a> {
     }
 
     pub(crate) fn statement(&mut self, stmt: &'a AstStmt) -> Run<Flow> {
-        let ready = self.charge(1).and_then(|()| self.depth.enter(1));
+        let ready = self.depth.enter(1).and_then(|()| self.charge(1));
         let result = match ready {
             Ok(()) => self.run_statement(stmt),
             Err(m) => Err(m.at(self.place(stmt.span))),
@@ -265,7 +265,7 @@ impl<'a> Machine<'a> {
     }
 
     pub(crate) fn eval(&mut self, e: &'a AstExpr) -> Run<Value> {
-        let ready = self.charge(1).and_then(|()| self.depth.enter(1));
+        let ready = self.depth.enter(1).and_then(|()| self.charge(1));
         let result = ready.and_then(|()| self.expression(e));
         self.depth.leave(1);
         result.map_err(|m: Box<Mistake>| m.at(self.place(e.span)))
@@ -467,7 +467,7 @@ impl<'a> Machine<'a> {
         // the first sequence is evaluated outside of the comprehension's own variables
         let over = self.eval(&first.over)?;
         let names = self.locals_of(first, || comprehension_names(first, rest));
-        self.charge(names.len() as u64)?;
+        self.charge(names.len() as u64 / 16)?;
         let (values, parent) = (vec![None; names.len()], self.frame);
         self.in_frame(names, values, parent, |m| {
             m.clauses(first, over, rest, &mut item)
