@@ -347,7 +347,8 @@ fn fields_that_nest_deeply() {
     let thread = std::thread::Builder::new().stack_size(1 << 20).spawn(|| {
         let text = "a = sphere()\nfor i in range(500):\n    a = a.blend(sphere(), 0.1)\nshow(a)";
         let loaded = load(text, Limits::default()).unwrap();
-        let json = zeroset_scene::json::to_text(&zeroset_scene::json::expand(&loaded.scene).unwrap());
+        let json =
+            zeroset_scene::json::to_text(&zeroset_scene::json::expand(&loaded.scene).unwrap());
         assert!(json.len() > 10_000);
         let field = loaded.scene.field().unwrap().unwrap();
         let program = zeroset_field::program::Program::compile(&field, &Default::default());

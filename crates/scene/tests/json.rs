@@ -389,7 +389,12 @@ fn damaged(numbers: &[(u8, f32)], wide: f64, turn: [f64; 3]) -> Scene {
             13 => scene.settings.exposure = x,
             14 => scene.settings.footprint = x,
             15 => scene.settings.march = March::Relaxed { omega: x },
-            16 => scene.objects[0].occlusion = Some(Occlusion::Hemisphere { rays: 3, reach: Some(x) }),
+            16 => {
+                scene.objects[0].occlusion = Some(Occlusion::Hemisphere {
+                    rays: 3,
+                    reach: Some(x),
+                })
+            }
             17 => scene.materials[material].roughness = x,
             18 => scene.materials[material].emission.x = x,
             19 => scene.materials[material].shininess = x,

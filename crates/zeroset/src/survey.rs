@@ -21,7 +21,9 @@ fn at(p: [f64; 3]) -> Vec3<F64> {
 /// The name of the object that the camera stands in, if it stands in one.
 pub(crate) fn around_camera(scene: &Scene) -> Option<&str> {
     let Camera { eye, near, .. } = scene.camera;
-    let from = (eye - scene.camera.axes.z_axis * near).as_dvec3().to_array();
+    let from = (eye - scene.camera.axes.z_axis * near)
+        .as_dvec3()
+        .to_array();
     let inside = |field: &Field| {
         let program = Program::compile(field, &Limits::default()).ok()?;
         Some(Point::<F64>::new(&program).value(at(from)).0 < 0.0)
@@ -85,7 +87,12 @@ pub(crate) fn looseness(field: &Field) -> Option<f64> {
 
 /// Powers of the inverse of the root of x^7 = x + 1.
 const SEQUENCE: [f64; 6] = [
-    0.898_654_7, 0.807_580_3, 0.725_735_8, 0.652_185_9, 0.586_090_0, 0.526_692_3,
+    0.898_654_7,
+    0.807_580_3,
+    0.725_735_8,
+    0.652_185_9,
+    0.586_090_0,
+    0.526_692_3,
 ];
 
 /// The smallest step that single precision tells apart where the camera looks, and the width of a pixel there, where the
@@ -93,7 +100,9 @@ const SEQUENCE: [f64; 6] = [
 pub(crate) fn coarse(scene: &Scene) -> Option<(f64, f64)> {
     let bounds = scene.finite_bounds()?;
     let largest = (bounds.min.iter().chain(&bounds.max))
-        .fold(scene.camera.eye.abs().max_element().into(), |m: f64, x| m.max(x.abs()));
+        .fold(scene.camera.eye.abs().max_element().into(), |m: f64, x| {
+            m.max(x.abs())
+        });
     let centre = glam::DVec3::from(bounds.centre());
     let distance = (scene.camera.eye.as_dvec3() - centre).length();
     let (slope, constant) = scene.camera.pixel_width(scene.settings.size[1]);
@@ -108,14 +117,21 @@ mod tests {
     use zeroset_scene::load::{Language, Options, load_text};
 
     fn scene(text: &str) -> Scene {
-        load_text("t.star", text, Language::Starlark, None, &Options::default())
-            .expect("a scene")
-            .scene
+        load_text(
+            "t.star",
+            text,
+            Language::Starlark,
+            None,
+            &Options::default(),
+        )
+        .expect("a scene")
+        .scene
     }
 
     #[test]
     fn a_camera_in_a_solid_is_noticed() {
-        let within = "show(sphere(2), name = \"shell\")\ncamera(eye = (0, 0, 1), target = (0, 0, 0))";
+        let within =
+            "show(sphere(2), name = \"shell\")\ncamera(eye = (0, 0, 1), target = (0, 0, 0))";
         assert_eq!(around_camera(&scene(within)), Some("shell"));
         let without = "show(sphere(2))\ncamera(eye = (0, 0, 5), target = (0, 0, 0))";
         assert_eq!(around_camera(&scene(without)), None);

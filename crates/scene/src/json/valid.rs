@@ -1,6 +1,5 @@
 //! What a scene's numbers may be: in whatever the language makes, in JSON that is read, and in a scene that is written.
 
-use zeroset_field::catalogue::{LARGE, SMALL};
 use super::write::degrees_of;
 use super::{Read, Step, problem};
 use crate::camera::{Camera, Lens};
@@ -11,6 +10,7 @@ use crate::material::{Material, Pattern};
 use crate::scene::Scene;
 use crate::settings::{Antialias, March, Occlusion, Settings, Shadow};
 use glam::Vec3;
+use zeroset_field::catalogue::{LARGE, SMALL};
 
 /// Largest coordinate of a light or a gradient.
 const FAR: f32 = 1e12;

@@ -9,8 +9,8 @@ use super::value::{Thing, Value};
 use crate::report::Place;
 use starlark_syntax::syntax::ast::BinOp;
 use std::sync::Arc;
-use zeroset_field::catalogue::{LARGE, SMALL};
 use zeroset_field::bounds::Aabb;
+use zeroset_field::catalogue::{LARGE, SMALL};
 use zeroset_field::field::Field;
 use zeroset_field::formula::{
     Budget, BuildError, Builder, Expression, Formula, Function, ProofError, functions,

@@ -1,6 +1,5 @@
 //! Colours, patterns and materials.
 
-use zeroset_field::catalogue::{LARGE, SMALL};
 use super::mistake::{Run, mistake};
 use super::native::{Call, Given, Native, Slot, slot, spoken};
 use super::value::{Thing, Value};
@@ -9,6 +8,7 @@ use crate::draft::unit;
 use crate::images;
 use crate::material::{Material, Pattern};
 use glam::{DVec3, Vec3};
+use zeroset_field::catalogue::{LARGE, SMALL};
 
 macro_rules! function {
     ($group:literal, $name:literal, $doc:literal, [$($slot:expr),*], $run:expr) => {

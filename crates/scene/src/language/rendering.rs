@@ -1,11 +1,11 @@
 //! How the scene is rendered: `render(...)` and the methods that it takes.
 
-use zeroset_field::catalogue::{LARGE, SMALL};
 use super::mistake::{Run, mistake};
 use super::native::{Call, Native, Slot, slot};
 use super::value::{Thing, Value};
 use crate::draft::check_size;
 use crate::settings::{Antialias, Filter, March, Normals, Occlusion, Settings, Shading, Shadow};
+use zeroset_field::catalogue::{LARGE, SMALL};
 
 macro_rules! function {
     ($group:literal, $name:literal, $doc:literal, [$($slot:expr),*], $run:expr) => {

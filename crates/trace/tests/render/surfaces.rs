@@ -450,10 +450,17 @@ fn a_stated_slope_changes_no_light() {
         let film = picture(&shape);
         for plane in [Plane::Occlusion, Plane::Shadow, Plane::Colour] {
             let (a, b) = (film.plane(plane), right.plane(plane));
-            let off = a.iter().zip(b).map(|(x, y)| f64::from((x - y).abs())).sum::<f64>();
+            let off = a
+                .iter()
+                .zip(b)
+                .map(|(x, y)| f64::from((x - y).abs()))
+                .sum::<f64>();
             let mean = off / a.len() as f64;
             eprintln!("{shape} {plane:?}: {mean}");
-            assert!(mean < 0.02, "{shape}: {plane:?} is off by {mean} in the mean");
+            assert!(
+                mean < 0.02,
+                "{shape}: {plane:?} is off by {mean} in the mean"
+            );
         }
     }
 }
