@@ -105,6 +105,22 @@ impl<'p> Isolation<'p> {
         line.sided(self.values.value(v3(p[0], p[1], p[2])).0)
     }
 
+    /// The place between one that is not behind the surface and one that is.
+    fn between(&mut self, line: &Line, mut outside: f64, mut inside: f64) -> Crossing {
+        while inside - outside > inside.abs() * f64::from(f32::EPSILON) * 0.25 {
+            let middle = 0.5 * (outside + inside);
+            if middle <= outside || middle >= inside {
+                break;
+            }
+            if self.value(line, middle) < 0.0 {
+                inside = middle;
+            } else {
+                outside = middle;
+            }
+        }
+        Crossing::At(inside as f32)
+    }
+
     /// Whether the field is nowhere below `limit` on a part of the ray, as far as is easily seen: by its range over the box
     /// around it, by its slope where it is a bound, by the range of its derivative along the ray.
     fn is_clear(&mut self, line: &Line, from: f64, to: f64, limit: f64) -> bool {
@@ -191,8 +207,8 @@ impl<'p> Isolation<'p> {
             let within = value < behind(middle);
             if to - from <= f64::from(least) {
                 match (within, ends_behind) {
-                    (true, _) => return Crossing::At(middle as f32),
-                    (false, true) => return Crossing::At(to as f32),
+                    (true, _) => return self.between(line, from, middle),
+                    (false, true) => return self.between(line, middle, to),
                     (false, false) => continue,
                 }
             }

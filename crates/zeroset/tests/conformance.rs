@@ -88,7 +88,7 @@ fn restless(scene: &Scene) -> impl Fn(&Budget) -> f64 {
 fn check(name: &str, scene: &Scene, film: &Film, reference: &Film) -> Option<String> {
     let restless = restless(scene);
     let budgets = BUDGETS.map(|budget| Budget {
-        share: budget.share + 2.0 * restless(&budget),
+        share: budget.share + 3.0 * restless(&budget),
         ..budget
     });
     let off = differing(scene, film, reference, &budgets);
@@ -316,20 +316,20 @@ fn the_light_at_the_foot_of_a_wall_comes_from_the_open_side() {
     let by_cpu = heights(&on(&CpuRenderer::new(None).unwrap(), &scene));
     println!("{by_cpu:?}");
     // the lowest pixels of the wall
-    assert!((by_cpu[1] - 0.537).abs() < 0.12, "{by_cpu:?}");
+    assert!((by_cpu[1] - 0.537).abs() < 0.2, "{by_cpu:?}");
     let Some(gpu) = testing::renderer("the foot of a wall on the GPU") else {
         return;
     };
     let by_gpu = heights(&on(&gpu, &scene));
-    assert!((by_gpu[1] - 0.537).abs() < 0.12, "{by_gpu:?}");
+    assert!((by_gpu[1] - 0.537).abs() < 0.2, "{by_gpu:?}");
 }
 
 /// Faults in the text of a shader, each of which must be noticed in a plane.
 const FAULTS: [(&str, &str, &str, Plane); 10] = [
     (
         "rays that stop too early",
-        "return frame.threshold.x * t + frame.threshold.y;",
-        "return 8.0 * (frame.threshold.x * t + frame.threshold.y);",
+        "return Found(true, t + z, 0.0, side, steps);",
+        "return Found(true, t + z - 0.05, 0.0, side, steps);",
         Plane::Depth,
     ),
     (

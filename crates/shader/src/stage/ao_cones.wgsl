@@ -32,7 +32,7 @@ const BALL_EMPTY: f32 = 0.999998;
 /// More balls than any scene needs.
 const BALLS: u32 = 64u;
 /// Smoothing of the slope along a cone, share of the step that would just do, steepest slope.
-const CONE_SMOOTHING: f32 = 0.3;
+const OPEN_SMOOTHING: f32 = 0.3;
 const CONE_SHARE: f32 = 0.95;
 const CONE_STEEPEST: f32 = 0.98;
 /// The cones are made around this direction and turned from it to the normal the shortest way. It is the opposite of no face
@@ -120,7 +120,7 @@ fn cone_clearance(at: Surface, ray: Ray, start: f32, end: f32, cosine: f32, step
             return least;
         }
         if (stride > 0.0) {
-            slope = mix(slope, rise, CONE_SMOOTHING);
+            slope = mix(slope, rise, OPEN_SMOOTHING);
         }
         slope = min(slope, CONE_STEEPEST);
         let edge = CONE_CARE * least;
