@@ -276,7 +276,8 @@ fn texts_that_nest_deeply() {
             if let Err(failed) = result {
                 // a text may also be more than there is memory for, as a whole
                 let report = &failed.report;
-                let whole = report.message().contains("memory");
+                let whole = ["memory", "shows nothing"];
+                let whole = whole.iter().any(|says| report.message().contains(says));
                 assert!(whole || report.position().is_some(), "{name}: {report}");
             }
         }
@@ -314,9 +315,10 @@ fn values_that_nest_deeply() {
             }
         }
     }
-    // a list in itself
+    // a list in itself is equal to itself, and written as far as it goes
     let text = "a = [0]\na.append(a)\nprint(a)\nx = a == [0, a]\nshow(sphere())";
-    assert!(load(text, Limits::default()).is_err());
+    let loaded = load(text, Limits::default()).unwrap();
+    assert!(loaded.log[0].contains("..."), "{:?}", loaded.log);
 }
 
 #[test]

@@ -180,7 +180,7 @@ fn mistakes_with_letters_of_any_kind() {
             (2, 5),
         ),
         ("\u{e4}\u{e4} = \u{f6} + 1", "there is no `\u{f6}`", (1, 6)),
-        ("def f(\u{e4}, \u{e4}):\n    pass", "duplicated", (1, 11)),
+        ("def f(\u{e4}, \u{e4}):\n    pass", "duplicated", (1, 10)),
         ("\u{e4} = 1\n\u{e4}.\u{f6}()", "`\u{f6}`", (2, 3)),
         ("sphere(\u{e4} = 1)", "no argument `\u{e4}`", (1, 8)),
         (
