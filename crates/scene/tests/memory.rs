@@ -265,6 +265,37 @@ fn sources_that_are_too_much() {
     good(load(&folder.path().join("main.star"), &patient()));
 }
 
+/// Files whose syntax trees are nearly as large as they may be: what was charged for them is what they take.
+#[test]
+fn sources_that_just_fit() {
+    let _alone = alone();
+    for (what, line, tokens) in [
+        (
+            "lists",
+            format!("x = [{}]\n", vec!["0"; 500].join(",")),
+            1004,
+        ),
+        ("sums", "a+a\n".to_string(), 4),
+        ("calls", "f()\n".to_string(), 4),
+        ("texts", format!("{}\n", vec!["\"\""; 300].join(",")), 600),
+        ("statements", "a\n".to_string(), 2),
+    ] {
+        let text = format!(
+            "a = 1\ndef f(): pass\n{}show(sphere())\n",
+            line.repeat(950_000 / tokens)
+        );
+        match load_text("full.star", &text, Language::Starlark, None, &patient()) {
+            Ok(_) => {}
+            // the passes over the tree have limits of their own
+            Err(failed) => println!("{what}: {}", failed.report),
+        }
+        if let Some(peak) = peak_memory() {
+            println!("{what}: {} MiB", peak >> 20);
+            assert!(peak < BYTES, "{what}: {} MiB", peak >> 20);
+        }
+    }
+}
+
 /// As many objects as the limit allows, written by hand or by a program, on one line or on many.
 #[test]
 fn ten_thousand_objects() {

@@ -35,10 +35,11 @@ pub struct View<'a> {
 
 /// The planes that a film must have for the view of one of them.
 pub fn needed(plane: Plane) -> &'static [Plane] {
+    const ALL: &[Plane] = &Plane::ALL;
     match plane {
         // a residual is one of a hit
         Plane::Residual => &[Plane::Residual, Plane::Depth],
-        other => &Plane::ALL[other as usize..][..1],
+        other => &ALL[other as usize..][..1],
     }
 }
 
