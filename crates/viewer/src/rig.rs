@@ -99,6 +99,11 @@ impl Rig {
         }
     }
 
+    /// Sees as far as a camera does.
+    pub fn see_as_far_as(&mut self, camera: &Camera) {
+        self.far = camera.far;
+    }
+
     /// The point that it orbits.
     pub fn pivot(&self) -> DVec3 {
         self.eye - self.axes.z_axis * self.distance
@@ -236,10 +241,8 @@ impl Rig {
         if camera.near != 0.0 {
             text += &format!(", near = {}", camera.near);
         }
-        if camera.far != 1000.0 {
-            text += &format!(", far = {}", camera.far);
-        }
-        text + ")"
+        // what is automatic depends on where the camera stands
+        text + &format!(", far = {})", camera.far)
     }
 }
 

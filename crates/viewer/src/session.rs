@@ -186,12 +186,20 @@ impl Session {
         let moved = match &self.current {
             None => true,
             Some(before) => {
-                before.scene.camera != scene.camera && (outcome.is_edit || !self.is_free)
+                // how far it sees follows from the scene where the file does not say it
+                let stands = |camera: &Camera| Camera {
+                    far: 0.0,
+                    ..*camera
+                };
+                stands(&before.scene.camera) != stands(&scene.camera)
+                    && (outcome.is_edit || !self.is_free)
             }
         };
         if moved {
             self.rig = Rig::new(&scene.camera, scene.finite_bounds());
             self.is_free = false;
+        } else {
+            self.rig.see_as_far_as(&scene.camera);
         }
         if self.current.is_none() {
             self.slice.at = 0.5 * (Slice::room(&scene).min[2] + Slice::room(&scene).max[2]);

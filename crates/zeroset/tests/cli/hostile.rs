@@ -220,26 +220,32 @@ fn routes(text: &str) -> Vec<String> {
 
 #[test]
 fn nothing_that_a_script_says_reaches_a_terminal() {
+    let all = PLANTED.concat();
+    let folder = Folder::empty();
+    folder.write("part.star", "x = 1\n");
+    let check = |scene: &str, commands: &[&str]| {
+        folder.write("scene.star", scene);
+        for command in commands {
+            harmless(&folder.run(command), &format!("{command}: {scene:?}"));
+        }
+    };
+    for scene in routes(&all) {
+        check(&scene, &["check scene.star --color always"]);
+    }
+    // each command has its own words
+    let commands = [
+        "check scene.star --json",
+        "render scene.star --size 4x4 -v",
+        "slice scene.star --size 4x4",
+        "expand scene.star",
+        "export scene.star --glsl",
+    ];
+    for scene in routes(&all).iter().take(6) {
+        check(scene, &commands);
+    }
     for planted in PLANTED {
-        let folder = Folder::empty();
-        folder.write("part.star", "x = 1\n");
-        for (number, scene) in routes(planted).into_iter().enumerate() {
-            folder.write("scene.star", &scene);
-            // each command has its own words; one of each kind is enough for every text
-            let commands = [
-                "check scene.star --color always",
-                "check scene.star --json",
-                "render scene.star --size 4x4 -v",
-            ];
-            let more = [
-                "slice scene.star --size 4x4",
-                "expand scene.star",
-                "export scene.star --glsl",
-            ];
-            let few = if number < 6 { &more[..] } else { &[] };
-            for command in commands.iter().chain(few) {
-                harmless(&folder.run(command), &format!("{command}: {scene:?}"));
-            }
+        for scene in routes(planted).iter().take(3) {
+            check(scene, &["check scene.star"]);
         }
     }
 }
@@ -247,7 +253,7 @@ fn nothing_that_a_script_says_reaches_a_terminal() {
 #[test]
 fn nothing_that_json_says_reaches_a_terminal() {
     let folder = Folder::empty();
-    folder.write("plain.star", "show(sphere(0.8), color = \"red\", name = \"planted-name\")\nshow(box(1.0).paint(material(\"blue\")))\n");
+    folder.write("plain.star", "show(sphere(0.8), \"red\", name = \"planted-name\")\nshow(box(1.0).paint(material(\"blue\")))\n");
     let text = folder.good("expand plain.star").out;
     for planted in PLANTED {
         let escaped = serde_json::to_string(planted).unwrap();
