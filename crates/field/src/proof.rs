@@ -90,7 +90,7 @@ impl fmt::Display for ProofError {
         match self {
             ProofError::Bounds { min, max } => write!(
                 f,
-                "the bounds of a formula must be a box with sides above 0 within -1e6 to 1e6, not {} to {}",
+                "the bounds of a formula must be a box with sides above 0 within -1e9 to 1e9, not {} to {}",
                 place(*min),
                 place(*max)
             ),

@@ -267,7 +267,7 @@ fn reach_of_occlusion() {
     for method in ["cones", "hemisphere", "obscurance"] {
         for (reach, written) in [("", false), ("reach = 0.25", true)] {
             let text = format!("show(sphere())\nrender(ao = {method}({reach}))");
-            let scene = load("reach.star", &text, Language::Starlark).scene;
+            let scene = load("sky.star", &text, Language::Starlark).scene;
             let json = round_trip(&scene);
             assert_eq!(
                 json.contains("\"reach\": 0.25"),
@@ -275,7 +275,7 @@ fn reach_of_occlusion() {
                 "{method}: {json}"
             );
             assert_eq!(json.contains("\"reach\""), written, "{method}: {json}");
-            let again = load("reach.json", &json, Language::Json).scene;
+            let again = load("sky.json", &json, Language::Json).scene;
             assert_eq!(again.settings.occlusion, scene.settings.occlusion);
         }
     }
@@ -330,9 +330,9 @@ fn of_scripts_at_the_edges() {
         panic!("a sun")
     };
     assert_eq!(direction.to_array(), [1.0, 0.0, 0.0]);
-    let far = star("show(sphere(1e9).move(x = 1e12))").camera.far;
+    let far = star("show(sphere(1e9).move(x = 1e9))").camera.far;
     assert!(far > 1e9, "{far}");
-    round_trip(&star("show(sphere(1e6).move(x = 1e12))"));
+    round_trip(&star("show(sphere(1e6).move(x = 1e9))"));
 }
 
 /// Numbers that are likely to be trouble.

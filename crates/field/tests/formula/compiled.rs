@@ -211,8 +211,8 @@ fn what_is_not_a_number_stays_in_its_place() {
     let wild: [fn(&Expression) -> Expression; 7] = [
         |p| 1.0 / p.x() - 1.0,
         |p| p.x() / p.x() - p.y() / p.x(),
-        |p| p.x().ln() * p.y().ln() + p.x().sqrt(),
-        |p| p.x().pow(p.y() * 100.0) - p.y().pow(-50.0),
+        |p| p.x().abs().ln() * p.y().abs().ln() + p.x().sqrt(),
+        |p| p.x().abs().pow(p.y() * 100.0) - p.y().pow(-50.0),
         |p| p.x().modulo(p.y()),
         |p| (p.x() * 200.0).exp() - (p.y() * 200.0).exp(),
         |p| p.z().atan2(p.x()) / p.y() - p.normalize().x(),

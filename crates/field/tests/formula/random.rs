@@ -75,7 +75,7 @@ proptest! {
                 prop_assert!(bounds.grow(1e-6).contains(o.within.centre()));
                 return Ok(());
             }
-            Err(ProofError::Steep { .. }) => return Ok(()),
+            Err(ProofError::Steep { .. } | ProofError::Negative(_)) => return Ok(()),
             Err(other) => return Err(TestCaseError::fail(other.to_string())),
         };
         let bounds = formula.bounds();
