@@ -7,7 +7,7 @@ use zeroset_scene::limits::Limits;
 use zeroset_scene::load::{Language, Options, load, load_text};
 
 /// What the file may take.
-const SECONDS: f64 = 2.0;
+const SECONDS: f64 = 20.0;
 
 /// Scripts that try to take more, and something that the answer says.
 fn scripts() -> Vec<(&'static str, String, &'static str)> {

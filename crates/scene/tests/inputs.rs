@@ -7,7 +7,7 @@ use zeroset_scene::limits::Limits;
 use zeroset_scene::load::{Options, load};
 
 /// What an error may take.
-const SECONDS: f64 = 2.0;
+const SECONDS: f64 = 20.0;
 
 fn error(path: &Path) -> String {
     let start = Instant::now();
