@@ -288,7 +288,11 @@ fn refusals() {
     let many = "show(union([field(lambda p: length(p - (i, 0, 0)) + 0.01 * sin(9 * p.x * p.y) * cos(p.z * p.x) - 1, size = 40) for i in range(10000)]))";
     let start = std::time::Instant::now();
     assert!(load(many).is_err());
-    assert!(start.elapsed().as_secs_f64() < 60.0, "{:?}", start.elapsed());
+    assert!(
+        start.elapsed().as_secs_f64() < 60.0,
+        "{:?}",
+        start.elapsed()
+    );
 }
 
 /// Whole powers are products: of negative numbers as well, with the right sign, slope and value everywhere.

@@ -228,7 +228,11 @@ fn mistakes_with_letters_of_any_kind() {
     ] {
         let start = std::time::Instant::now();
         assert!(star(&text).is_err());
-        assert!(start.elapsed().as_secs_f64() < 60.0, "{:?}", start.elapsed());
+        assert!(
+            start.elapsed().as_secs_f64() < 60.0,
+            "{:?}",
+            start.elapsed()
+        );
     }
 }
 

@@ -61,7 +61,7 @@ fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
             z = sign_change(t, r, inside) - t;
             left -= 1u;
             if (left == 0u) {
-                return Found(true, t + z, 0.0, side, steps);
+                return Found(true, t + z, 0.0, side, steps - REFINEMENTS);
             }
             continue;
         }
