@@ -37,17 +37,20 @@ fn formulas() -> impl Strategy<Value = Steps> {
         Just(2.0),
         Just(10.0)
     ];
-    proptest::collection::vec((any::<[u32; 3]>(), constant), 1..24).prop_map(|list| {
-        let mut steps = vec![
-            Step::Coordinate(0),
-            Step::Coordinate(1),
-            Step::Coordinate(2),
-        ];
-        for (numbers, constant) in list {
-            steps.push(step(steps.len(), numbers, constant));
-        }
-        Steps::new(steps).unwrap()
-    })
+    proptest::collection::vec((any::<[u32; 3]>(), constant), 1..24).prop_filter_map(
+        "a power of a negative constant",
+        |list| {
+            let mut steps = vec![
+                Step::Coordinate(0),
+                Step::Coordinate(1),
+                Step::Coordinate(2),
+            ];
+            for (numbers, constant) in list {
+                steps.push(step(steps.len(), numbers, constant));
+            }
+            Steps::new(steps).ok()
+        },
+    )
 }
 
 fn at(steps: &Steps, p: [f64; 3]) -> f64 {
