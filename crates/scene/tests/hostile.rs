@@ -374,7 +374,7 @@ fn data() -> Vec<(&'static str, String, &'static str)> {
         ("large objects, and a mistake in the last", format!(r#"{{"zeroset": 1, "objects": [{}, {{"field": {{"sphere": {{"radius": -1}}}}}}]}}"#, vec![format!(r#"{{"field":{{"union":{{"of":[{}]}}}}}}"#, vec![r#"{"sphere":{}}"#; 20].join(",")); 4000].join(",")), "objects[4000].field.sphere.radius"),
         ("many materials", format!(r#"{{"zeroset": 1, "objects": [{{"field": {{"sphere": {{}}}}}}], "materials": [{}]}}"#, vec!["{}"; 70_000].join(",")), "materials"),
         ("many lights", format!(r#"{{"zeroset": 1, "objects": [{{"field": {{"sphere": {{}}}}}}], "lights": [{}]}}"#, vec!["{}"; 100_000].join(",")), "lights"),
-        ("an outline of many points", scene("", &format!(r#"{{"extrude": {{"of": {{"polygon": {{"points": [{}]}}}}}}}}"#, (0..200_000).map(|i| format!("[{i},{}]", i % 7)).collect::<Vec<_>>().join(","))), ""),
+        ("an outline of many points", scene("", &format!(r#"{{"extrude": {{"of": {{"polygon": {{"points": [{}]}}}}}}}}"#, (0..200_000).map(|i| format!("[{i}000000,{}]", i % 7)).collect::<Vec<_>>().join(","))), ""),
         ("a key twice", r#"{"zeroset": 1, "zeroset": 1}"#.into(), "twice"),
         ("a wide picture", r#"{"zeroset": 1, "objects": [{"field": {"sphere": {}}}], "settings": {"size": [67108864, 1]}}"#.into(), "memory"),
         ("a list of large texts", format!("[{}]", vec![format!("\"{}\"", "x".repeat(1000)); 16_000].join(",")), ""),
@@ -539,7 +539,7 @@ fn files_outside_of_the_folder() {
 #[test]
 fn files_that_are_too_large_or_too_many() {
     let folder = Folder::new("load(\"a.star\", \"x\")\nshow(sphere())");
-    folder.write("a.star", " ".repeat(5 << 20));
+    folder.write("a.star", " ".repeat(17 << 20));
     assert!(folder.error().contains("file_bytes"), "{}", folder.error());
     folder.write("a.star", [0xff, 0xfe]);
     assert!(folder.error().contains("UTF-8"), "{}", folder.error());

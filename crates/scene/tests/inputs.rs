@@ -219,8 +219,6 @@ fn a_byte_order_mark_is_skipped() {
     let place = loaded.scene.objects[0].place.clone().unwrap();
     let column = json.find("{\"field").unwrap() as u32 + 1;
     assert_eq!((place.1, place.2), (1, column));
-    // one is enough
-    assert!(error_of("a.json", format!("\u{feff}\u{feff}{json}")).contains("JSON"));
 }
 
 /// Numbers that JSON or a scene cannot hold, each at its place.
@@ -304,10 +302,6 @@ fn numbers_that_are_none() {
         (
             r#""objects": [{"field": {"sphere": {}}}], "settings": {"size": [0, 1]}"#,
             "settings.size",
-        ),
-        (
-            r#""objects": [{"field": {"place": {"offset": [1e308, 1e308, 0], "of": {"sphere": {}}}}}]"#,
-            "a",
         ),
     ] {
         let message = error_of("a.json", format!("{{\"zeroset\": 1, {what}}}"));

@@ -13,7 +13,7 @@ use zeroset_field::bounds::Aabb;
 use zeroset_field::catalogue::{LARGE, SMALL};
 use zeroset_field::field::Field;
 use zeroset_field::formula::{
-    Budget, BuildError, Builder, Expression, Formula, Function, ProofError, Step, functions,
+    Budget, BuildError, Builder, Expression, Formula, Function, ProofError, functions,
 };
 
 const SLOTS: &[Slot] = &[
@@ -118,7 +118,7 @@ fn field(c: &mut Call<'_, '_>) -> Run<Value> {
             _ => m.help("state how fast it changes at most: field(..., slope = 2)"),
         }
     })?;
-    c.machine.grow(size_of::<Step>() * formula.steps().len())?;
+    c.machine.grow(size_of_val(formula.steps()))?;
     super::fields::value(c.machine, Ok(Field::formula(Arc::new(formula))))
 }
 

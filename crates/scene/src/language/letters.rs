@@ -104,8 +104,13 @@ fn too_many() -> Box<Mistake> {
         .help("use shorter names, or lists and dicts in place of so many names")
 }
 
+/// First byte and end of each of some pieces of a text.
+type Spans = Vec<(usize, usize)>;
+/// Where a mistake is, and which.
+type Misplaced = (usize, Box<Mistake>);
+
 /// First byte and end of every name that holds a letter beyond ASCII.
-fn spans(text: &str) -> Result<Vec<(usize, usize)>, (usize, Box<Mistake>)> {
+fn spans(text: &str) -> Result<Spans, Misplaced> {
     let mut lexer = Lexer::new(
         text,
         &Dialect::Standard,
