@@ -296,11 +296,11 @@ impl Renderer for Moody {
     fn render(&self, scene: &Scene, observer: &dyn Observer) -> Result<Frame, RenderError> {
         let name = scene.objects.first().map_or("", |o| o.name.as_str());
         assert!(name != "bad", "planted");
-        while name == "slow" {
-            if observer.is_cancelled() {
-                return Err(RenderError::Cancelled);
+        if name == "slow" {
+            while !observer.is_cancelled() {
+                std::thread::sleep(Duration::from_millis(1));
             }
-            std::thread::sleep(Duration::from_millis(1));
+            return Err(RenderError::Cancelled);
         }
         let [width, height] = scene.settings.size;
         let (film, statistics) = (Film::new(width, height), Statistics::default());
