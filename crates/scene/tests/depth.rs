@@ -29,8 +29,11 @@ fn load(text: &str, limits: Limits) -> Result<Loaded, Failed> {
     load_text("deep.star", text, Language::Starlark, None, &options)
 }
 
+/// A name, and the text that nests so deeply.
+type Form = (&'static str, fn(usize) -> String);
+
 /// Expressions with `f(n - 1)` below so many levels of themselves. Some open brackets, of which there may be 100.
-fn forms() -> Vec<(&'static str, fn(usize) -> String)> {
+fn forms() -> Vec<Form> {
     fn around(n: usize, open: &str, close: &str) -> String {
         format!("{}f(n - 1){}", open.repeat(n), close.repeat(n))
     }

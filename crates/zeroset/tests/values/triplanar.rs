@@ -191,13 +191,16 @@ fn read(
     image.pixels.iter().map(|p| p.as_dvec3()).collect()
 }
 
+/// How an image is stored: kind, depth, palette, pixels, and what is seen of it.
+type Case<'a> = (ColorType, BitDepth, &'a [u8], &'a [u8], Vec<DVec3>);
+
 /// All kinds of PNG: sRGB becomes linear light. What is see-through counts as its colour.
 #[test]
 fn every_kind_of_image_is_read_as_srgb() {
     use BitDepth::{Eight, One, Sixteen};
     let grey = |x: f64| DVec3::splat(linear(x));
     let of = |c: [f64; 3]| light(c.map(|x| x / 255.0));
-    let cases: [(ColorType, BitDepth, &[u8], &[u8], Vec<DVec3>); 8] = [
+    let cases: [Case<'_>; 8] = [
         (
             ColorType::Rgb,
             Eight,
