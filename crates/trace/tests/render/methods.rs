@@ -84,11 +84,11 @@ fn sampled_occlusion() {
     let size = [48, 36];
     for occlusion in [
         Occlusion::Hemisphere {
-            rays: 48,
+            rays: 8,
             reach: None,
         },
         Occlusion::Obscurance {
-            rays: 48,
+            rays: 8,
             reach: Some(2.0),
             tau: 1.0,
         },
