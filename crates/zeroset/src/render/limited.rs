@@ -16,7 +16,7 @@ use zeroset_scene::settings::Antialias;
 /// The longer side of the first picture, pixels: one tile.
 const FIRST: u32 = 32;
 /// How much longer the sides of a picture are at least than those of the one before.
-const GROWTH: u32 = 4;
+const GROWTH: u32 = 3;
 
 /// What a picture lacks.
 pub(crate) struct Lack {
