@@ -3,6 +3,7 @@
 use super::job::{Job, was_cancelled};
 use crate::failure::{Exit, Failure};
 use crate::interrupt::{self, Asking};
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -66,9 +67,9 @@ struct Patience {
 }
 
 impl Patience {
-    /// After a rendering that was ended by a change so long after it began.
-    fn ended(&mut self, after: Duration) {
-        self.grace = if after < ROW.max(2 * self.grace) {
+    /// After a rendering that was ended by a change that was seen so long after it began.
+    fn ended(&mut self, seen: Duration) {
+        self.grace = if seen < ROW.max(self.grace) {
             (2 * self.grace).max(GRACE)
         } else {
             Duration::ZERO
@@ -85,11 +86,14 @@ fn render_until_changed(
 ) -> Result<Option<Failure>, Failure> {
     let (done, outdated) = (AtomicBool::new(false), AtomicBool::new(false));
     let (began, grace) = (Instant::now(), patience.grace);
+    let seen = OnceLock::new();
     let result = thread::scope(|scope| {
         let looking = scope.spawn(|| {
             while !done.load(Ordering::Relaxed) && !outdated.load(Ordering::Relaxed) {
-                let is_late = began.elapsed() >= grace;
-                outdated.store(is_late && watched.changed(), Ordering::Relaxed);
+                if seen.get().is_some() || watched.changed() {
+                    seen.get_or_init(|| began.elapsed());
+                    outdated.store(began.elapsed() >= grace, Ordering::Relaxed);
+                }
                 thread::park_timeout(PAUSE);
             }
         });
@@ -100,7 +104,7 @@ fn render_until_changed(
         result
     });
     if result.as_ref().is_err_and(was_cancelled) {
-        patience.ended(began.elapsed());
+        patience.ended(seen.get().copied().unwrap_or_default());
     } else {
         *patience = Patience::default();
     }
@@ -136,7 +140,7 @@ mod tests {
         let mut patience = Patience::default();
         let mut last = patience.grace;
         for _ in 0..12 {
-            patience.ended(last + soon);
+            patience.ended(soon);
             assert!(patience.grace > last);
             last = patience.grace;
         }

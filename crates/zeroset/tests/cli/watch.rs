@@ -129,7 +129,10 @@ fn files_that_never_rest_are_rendered() {
             }
         });
         // a picture that takes longer than a file rests
-        let watching = Watching::start(&folder, "render scene.star --size 700x700 --watch");
+        let watching = Watching::start(
+            &folder,
+            "render scene.star --size 700x700 --watch --limit seconds=100",
+        );
         for _ in 0..2 {
             let said = watching.until("scene.png: 700x700");
             assert!(!said.contains("Waiting"), "{said}");
@@ -142,7 +145,7 @@ fn files_that_never_rest_are_rendered() {
 fn a_mended_file_is_taken_while_a_slow_picture_is_rendered() {
     let slow = "show(sphere())\nrender(size = (512, 512), ao = hemisphere(4096), aa = supersample(4096))\n";
     let folder = Folder::with(slow);
-    let watching = Watching::start(&folder, "render scene.star --watch");
+    let watching = Watching::start(&folder, "render scene.star --watch --limit seconds=100");
     for number in 0..3 {
         std::thread::sleep(Duration::from_millis(700));
         let began = std::time::Instant::now();
