@@ -198,6 +198,7 @@ impl Key {
         let mut stages = vec![
             include_str!("stage/count.wgsl"),
             include_str!("stage/camera.wgsl"),
+            include_str!("stage/bracket.wgsl"),
             include_str!("stage/sampling.wgsl"),
             include_str!("stage/surface.wgsl"),
             include_str!("stage/material.wgsl"),

@@ -189,13 +189,10 @@ pub(crate) fn sample<S: Simd>(
     work: &mut Workspace,
     point: impl Fn(usize) -> Vec3<Lanes<S>>,
 ) {
-    if solid.stop.before(n) {
-        return;
-    }
-    fill(n, work, point);
     if solid.close {
-        eval::values(s, solid.program, work, n);
-    } else {
+        values_at(s, solid, n, work, point);
+    } else if !solid.stop.before(n) {
+        fill(n, work, point);
         distances(s, solid, n, work);
     }
 }

@@ -8,7 +8,7 @@ use crate::simd::{Chosen, INSIDE, Sheet, load};
 use crate::tile::{Area, HEIGHT, Hits, Rays, Scratch, Solid, WIDTH};
 use fearless_simd::{Simd, prelude::*};
 use zeroset_field::number::lanes::LaneMask;
-use zeroset_field::number::{Lanes, Ops, Vec3};
+use zeroset_field::number::{Lanes, Ops, Real, Vec3};
 use zeroset_scene::settings::March;
 use zeroset_scene::view::Linear;
 
@@ -69,6 +69,7 @@ fn run<S: Simd, M: Marcher>(
     q.exhausted.clear();
     let mut list = List {
         plan,
+        fractal: solid.fractal,
         hits: &mut q.hits,
         steps: &mut q.steps,
         exhausted: &mut q.exhausted,
@@ -121,6 +122,8 @@ impl<S: Simd> Source<S> for Pixels<'_> {
 /// What becomes of rays.
 struct List<'a> {
     plan: &'a Plan,
+    /// A hit stays where its last sample was: the detail between two of them has no end.
+    fractal: bool,
     hits: &'a mut Hits,
     steps: &'a mut Sheet,
     exhausted: &'a mut Vec<(u32, f32)>,
@@ -132,9 +135,16 @@ impl<S: Simd> Sink<S> for List<'_> {
         let hits = &mut *self.hits;
         let n = hits.count;
         done.put3(at.ray, &mut hits.ray, n);
-        done.put(at.t, &mut hits.t, n);
-        done.put(at.beyond, &mut hits.beyond, n);
-        done.put(at.clearance, &mut hits.f, n);
+        let (t, beyond, f) = if self.fractal {
+            let crossed = at.beyond.above(0.0);
+            let f = Lanes::select(crossed, at.behind, at.clearance);
+            (at.t + at.beyond, at.beyond * 0.0, f)
+        } else {
+            (at.t, at.beyond, at.clearance)
+        };
+        done.put(t, &mut hits.t, n);
+        done.put(beyond, &mut hits.beyond, n);
+        done.put(f, &mut hits.f, n);
         done.put(at.behind, &mut hits.behind, n);
         done.put_words(at.word, &mut hits.word, n);
         done.put(Lanes(at.steps().to_float::<S::f32s>()), &mut hits.steps, n);

@@ -150,10 +150,6 @@ impl CpuRenderer {
 }
 
 impl Renderer for CpuRenderer {
-    fn render(&self, scene: &Scene, observer: &dyn Observer) -> Result<Frame, RenderError> {
-        self.render_planes(scene, &Plane::ALL, observer)
-    }
-
     fn render_planes(
         &self,
         scene: &Scene,

@@ -93,12 +93,6 @@ fn behind_surface(p: vec3f) -> f32 {
     return -0.5 * ROUNDING * (abs(p.x) + abs(p.y) + abs(p.z));
 }
 
-/// Where the line from the value `r` at `t` to that at `inside` (place and value) is zero.
-fn sign_change(t: f32, r: f32, inside: vec2f) -> f32 {
-    let share = clamp(r / max(r - inside.y, 1e-30), 0.02, 0.98);
-    return t + (inside.x - t) * share;
-}
-
 /// Whether the field is an estimate of something without an end to its detail.
 fn is_fractal() -> bool {
     return (frame.quality & 1u) != 0u;

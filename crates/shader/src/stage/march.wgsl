@@ -4,20 +4,9 @@
 // two samples. Least steps along a surface are not proven any more, nor are tiny ones towards it: a body that is not longer
 // than that along the ray may be passed.
 
-/// Where a ray ended.
-struct Found {
-    hit: bool,
-    t: f32,
-    /// Value of the field where it was found under the footprint, from the side that was marched; 0 where it changed its sign.
-    f: f32,
-    /// 1, or -1 where the ray began inside the solid.
-    side: f32,
-    steps: u32,
-}
-
 /// A guess goes this much farther than where the sign should change, so that it does.
 const GUESS_BEYOND: f32 = 1.1;
-/// Guesses are at most this many footprints long.
+/// Guesses are at most this many footprints long, until a ray is about to run out of steps.
 const GUESS_LONGEST: f32 = 64.0;
 /// Rays of pictures with fewer rows are marched as if they had this many.
 const FINE_ROWS: f32 = 512.0;
@@ -33,42 +22,39 @@ fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
     let finer = min(f32(frame.size.y) / FINE_ROWS, 1.0);
     let foot = frame.footprint * select(finer, 1.0 / sqrt(f32(max(frame.samples, 1u))), fractal);
     let share = select(LEAST_SHARE, 0.5, fractal);
+    // a ray that nearly ran out of steps looks for the surface however far it is: a guess that finds none is taken back
+    let late = select(frame.max_steps, frame.max_steps - frame.max_steps / 4u, frame.hit_selection != 0u);
     var t = start;
     var z = 0.0;
     var r = 0.0;
     var side = 1.0;
     var guess = false;
     var falling = false;
+    // whether the ray goes to where the surface should be before its end
+    var coming = false;
     var towards = false;
-    var limit = 0.0;
     var progress = begin_steps(slope);
-    // how often the place of the change of sign is still guessed, the place behind it and the value there
+    // how often the place of the change of sign is still guessed, and where it is
     var left = 0u;
-    var inside = vec2f(0.0);
+    var part = Bracket();
     for (var steps = 1u; steps <= frame.max_steps; steps++) {
         let to = t + z;
         let p = ray.origin + ray.direction * to;
         var next = side * field(p);
         if (left > 0u) {
-            if (next < 0.0) {
-                inside = vec2f(to, next);
-                r *= 0.5;
-            } else {
-                t = to;
-                r = next;
-                inside.y *= 0.5;
-            }
-            z = sign_change(t, r, inside) - t;
+            part = bracket_narrowed(part, to, next);
+            t = bracket_root(part);
+            z = 0.0;
             left -= 1u;
             if (left == 0u) {
-                return Found(true, t + z, 0.0, side, steps - REFINEMENTS);
+                return Found(true, t, 0.0, side, steps - REFINEMENTS);
             }
             continue;
         }
         let rounding = frame.rounding.x * to + frame.rounding.y;
         let radius = foot * (frame.pixel.x * to * narrow + frame.pixel.y);
         let least = radius * share + 4.0 * rounding;
-        limit = radius + rounding;
+        let limit = radius + rounding;
         guess = guess && steps > 1u;
         var root = 0.0;
         if (steps == 1u) {
@@ -78,9 +64,12 @@ fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
             let gap = z > r && z > r + next && (guess || z > least);
             let behind = next < behind_surface(p) || (next < 0.0 && r < 0.0);
             if (behind && (!gap || guess)) {
-                r = max(r, 0.0);
-                inside = vec2f(to, next);
-                z = sign_change(t, r, inside) - t;
+                if (fractal) {
+                    return Found(true, to, next, side, steps);
+                }
+                part = Bracket(t, max(r, 0.0), to, next, 0.0);
+                t = bracket_root(part);
+                z = 0.0;
                 left = REFINEMENTS;
                 continue;
             }
@@ -94,7 +83,9 @@ fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
             progress = passed(progress, z, r, next);
             falling = r > next;
             towards = r - next > TOWARDS * z;
-            root = next * z / max(r - next, 1e-30) * GUESS_BEYOND + least;
+            let ahead = next * z / max(r - next, 1e-30);
+            coming = falling && to + ahead <= end;
+            root = ahead * GUESS_BEYOND + least;
         }
         t = to;
         r = next;
@@ -107,10 +98,14 @@ fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
         // steps that are longer than the radius are tested, and must be so long that they are
         let step = next_step(progress, r);
         z = max(select(step, r, !fractal && step < least), select(least, min(select(4.0, 64.0, r < 0.0) * rounding, least), towards && !fractal));
-        guess = !fractal && steps > 1u && falling && r >= 0.0 && r < limit && root > z && root < GUESS_LONGEST * limit;
+        let sure = (r < limit && root < GUESS_LONGEST * limit) || steps > late;
+        guess = !fractal && steps > 1u && falling && r >= 0.0 && sure && root > z;
         z = min(select(z, root, guess), end - t);
     }
-    // out of steps: a surface only where the ray is within a pixel of it, and comes nearer
-    let close = fractal || (is_close() && falling && frame.hit_selection != 0u);
-    return Found(close && r < 2.0 * limit, t, r, side, frame.max_steps);
+    if (left > 0u) {
+        return Found(true, t, 0.0, side, frame.max_steps);
+    }
+    // out of steps: a surface only where the ray is within a pixel of it, and gets there or nobody asked whether it does
+    let near = fractal || (is_close() && (coming || frame.hit_selection == 0u));
+    return Found(near && r < 2.0 * footprint(ray, t), t, r, side, frame.max_steps);
 }

@@ -93,6 +93,10 @@ impl Plain<'_> {
             let crossed = next < behind(t + z) || (next < 0.0 && r < 0.0);
             let gap = steady.careful() && z > r && z > r + next && (guess || z > least(t + z));
             if crossed && (!gap || guess) {
+                if fractal {
+                    (t, r, arrived) = (t + z, next, true);
+                    break;
+                }
                 found = Some([t, r.max(0.0), t + z, next]);
                 break;
             }
