@@ -1,22 +1,20 @@
 //! Files that are no ordinary files, or no text: each is refused at once, with what is wrong.
 
+use measure::{BYTES, SECONDS, alone, peak_memory, timed};
 use std::path::Path;
-use std::time::Instant;
 use tempfile::TempDir;
 use zeroset_scene::limits::Limits;
 use zeroset_scene::load::{Options, load};
 
-/// What an error may take.
-const SECONDS: f64 = 20.0;
+mod measure;
 
 fn error(path: &Path) -> String {
-    let start = Instant::now();
-    let failed = load(path, &Options::default()).expect_err(&path.display().to_string());
-    assert!(
-        start.elapsed().as_secs_f64() < SECONDS,
-        "{}",
-        path.display()
-    );
+    let (loaded, seconds) = timed(|| load(path, &Options::default()));
+    let failed = loaded.expect_err(&path.display().to_string());
+    assert!(seconds < SECONDS, "{}: {seconds:.2} s", path.display());
+    if let Some(peak) = peak_memory() {
+        assert!(peak < BYTES, "{}: {} MiB", path.display(), peak >> 20);
+    }
     let message = failed.report.message().to_string();
     assert!(
         message.chars().count() < 1100,
@@ -40,6 +38,7 @@ fn error_of(name: &str, bytes: impl AsRef<[u8]>) -> String {
 
 #[test]
 fn scenes_that_are_no_files() {
+    let _alone = alone();
     let folder = folder();
     for name in ["a.star", "a.json", "no/such/a.star"] {
         assert!(error(&folder.path().join(name)).contains("there is no file"));
@@ -61,6 +60,7 @@ fn scenes_that_are_no_files() {
 #[cfg(unix)]
 #[test]
 fn pipes_and_devices() {
+    let _alone = alone();
     use std::os::unix::fs::symlink;
     let folder = folder();
     let at = |name: &str| folder.path().join(name);
@@ -148,6 +148,7 @@ fn pipes_and_devices() {
 /// A file that grows while it is read ends at its limit.
 #[test]
 fn a_file_that_grows() {
+    let _alone = alone();
     use std::io::Write;
     use std::sync::atomic::{AtomicBool, Ordering};
     let folder = folder();
@@ -175,9 +176,8 @@ fn a_file_that_grows() {
                 limits,
                 ..Options::default()
             };
-            let start = Instant::now();
-            let failed = load(&path, &options).unwrap_err();
-            assert!(start.elapsed().as_secs_f64() < SECONDS, "{}", failed.report);
+            let (loaded, seconds) = timed(|| load(&path, &options));
+            assert!(seconds < SECONDS, "{}", loaded.unwrap_err().report);
         }
         done.store(true, Ordering::Relaxed);
     });
@@ -186,6 +186,7 @@ fn a_file_that_grows() {
 
 #[test]
 fn files_that_are_no_text() {
+    let _alone = alone();
     for name in ["a.star", "a.json"] {
         let message = error_of(name, b"{\n  \"a\": \"\xff\"}");
         assert!(
@@ -211,6 +212,7 @@ fn files_that_are_no_text() {
 
 #[test]
 fn a_byte_order_mark_is_skipped() {
+    let _alone = alone();
     let folder = folder();
     let path = folder.path().join("mark.json");
     let json = "{\"zeroset\": 1, \"objects\": [{\"field\": {\"sphere\": {}}}]}";
@@ -219,11 +221,15 @@ fn a_byte_order_mark_is_skipped() {
     let place = loaded.scene.objects[0].place.clone().unwrap();
     let column = json.find("{\"field").unwrap() as u32 + 1;
     assert_eq!((place.1, place.2), (1, column));
+    // a second one is no mark: it stands where a value should
+    std::fs::write(&path, format!("\u{feff}\u{feff}{json}")).unwrap();
+    assert!(!error(&path).is_empty());
 }
 
 /// Numbers that JSON or a scene cannot hold, each at its place.
 #[test]
 fn numbers_that_are_none() {
+    let _alone = alone();
     let scene = |radius: &str| {
         format!(
             "{{\"zeroset\": 1, \"objects\": [{{\"field\": {{\"sphere\": {{\"radius\": {radius}}}}}}}]}}"
@@ -296,6 +302,10 @@ fn numbers_that_are_none() {
             "sky.ambient",
         ),
         (
+            r#""objects": [{"field": {"place": {"offset": [0, 1e308, 0], "of": {"sphere": {}}}}}]"#,
+            "objects[0].field.place.offset",
+        ),
+        (
             r#""objects": [{"field": {"sphere": {}}}], "settings": {"exposure": 1e39}"#,
             "settings.exposure",
         ),
@@ -312,6 +322,7 @@ fn numbers_that_are_none() {
 /// A title is a title: it may look like a path, and names no file.
 #[test]
 fn titles() {
+    let _alone = alone();
     let folder = folder();
     let path = folder.path().join("a b.json");
     for (title, right) in [
@@ -343,6 +354,7 @@ fn titles() {
 /// Names of a megabyte are refused or cut, wherever they stand.
 #[test]
 fn long_names() {
+    let _alone = alone();
     let long = "n".repeat(1 << 20);
     let sphere = r#"{"field": {"sphere": {}}}"#;
     for json in [
