@@ -355,14 +355,6 @@ impl Field {
     /// A tree too deep, a placement that is not finite, a scale that is not positive, a plane shape that would leave its
     /// plane.
     pub fn place(&self, placement: Placement) -> Result<Field, FieldError> {
-        let numbers = placement.rotation.iter().flatten().chain(&placement.offset);
-        if !numbers.chain([&placement.scale]).all(|x| x.is_finite()) || placement.scale <= 0.0 {
-            let reason = "the motion must be finite and its scale above 0".to_string();
-            return Err(FieldError::Unfit {
-                entry: "place",
-                reason,
-            });
-        }
         let (placement, shape) = match self.node() {
             Node::Place {
                 placement: inner,
@@ -370,6 +362,13 @@ impl Field {
             } => (placement.after(inner), shape),
             _ => (placement, self),
         };
+        if !placement.is_held() {
+            return Err(FieldError::Unfit {
+                entry: "place",
+                reason: "the motion must be finite in single precision and its scale above 0"
+                    .into(),
+            });
+        }
         let child = shape.facts();
         let placement = match child.dimension {
             Dimension::Two => placement.in_plane().ok_or_else(|| FieldError::Unfit {

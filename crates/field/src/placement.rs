@@ -29,6 +29,15 @@ impl Placement {
         scales: false,
     };
 
+    /// Whether single precision holds its numbers, as every renderer must.
+    pub(crate) fn is_held(&self) -> bool {
+        let numbers = self.rotation.iter().flatten().chain(&self.offset);
+        numbers
+            .chain([&self.scale])
+            .all(|x| (*x as f32).is_finite())
+            && self.scale as f32 > 0.0
+    }
+
     /// Exchanges y and z, which is a mirror image.
     pub(crate) const UPRIGHT: Placement = Placement {
         rotation: [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]],

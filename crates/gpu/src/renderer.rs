@@ -284,10 +284,6 @@ impl GpuRenderer {
 }
 
 impl Renderer for GpuRenderer {
-    fn render(&self, scene: &Scene, observer: &dyn Observer) -> Result<Frame, RenderError> {
-        self.render_planes(scene, &Plane::ALL, observer)
-    }
-
     fn render_planes(
         &self,
         scene: &Scene,

@@ -242,7 +242,7 @@ fn load_from(
     })
 }
 
-/// A text without the byte order mark that some editors put in front of it.
+/// A text without the byte order mark that some editors put in front of it, and that says nothing in UTF-8.
 fn without_mark(text: String) -> String {
     match text.strip_prefix('\u{feff}') {
         Some(rest) => rest.to_string(),
@@ -286,9 +286,7 @@ fn load_json(
     budget: Budget,
 ) -> Result<Loaded, Failed> {
     let files = Files::new(root, options.limits.files.saturating_sub(1), budget);
-    // some editors begin a file with a byte order mark, which says nothing in UTF-8
-    let source = Source::new(name, text.strip_prefix('\u{feff}').unwrap_or(text));
-    let mut draft = Draft::new(options, files, vec![source]);
+    let mut draft = Draft::new(options, files, vec![Source::new(name, text)]);
     let result =
         json::read(&mut draft, &options.limits).and_then(|()| match draft.unknown_parameter() {
             None => Ok(()),

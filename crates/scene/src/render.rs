@@ -10,9 +10,11 @@ pub trait Renderer {
     ///
     /// # Errors
     /// See [`RenderError`].
-    fn render(&self, scene: &Scene, observer: &dyn Observer) -> Result<Frame, RenderError>;
+    fn render(&self, scene: &Scene, observer: &dyn Observer) -> Result<Frame, RenderError> {
+        self.render_planes(scene, &Plane::ALL, observer)
+    }
 
-    /// Renders some planes only, which takes less memory. A renderer that cannot leave planes out gives all.
+    /// Renders these planes only, which takes less memory.
     ///
     /// # Errors
     /// See [`RenderError`].
@@ -21,10 +23,7 @@ pub trait Renderer {
         scene: &Scene,
         planes: &[Plane],
         observer: &dyn Observer,
-    ) -> Result<Frame, RenderError> {
-        let _ = planes;
-        self.render(scene, observer)
-    }
+    ) -> Result<Frame, RenderError>;
 }
 
 /// A finished picture and what it took.

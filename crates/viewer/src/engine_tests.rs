@@ -42,7 +42,12 @@ struct Counting {
 }
 
 impl Renderer for Counting {
-    fn render(&self, scene: &Scene, observer: &dyn Observer) -> Result<Frame, RenderError> {
+    fn render_planes(
+        &self,
+        scene: &Scene,
+        planes: &[Plane],
+        observer: &dyn Observer,
+    ) -> Result<Frame, RenderError> {
         self.calls.fetch_add(1, Ordering::SeqCst);
         let [width, height] = scene.settings.size;
         while scene.settings.antialias != Antialias::None && !self.may_finish.load(Ordering::SeqCst)
@@ -57,7 +62,7 @@ impl Renderer for Counting {
             rays: u64::from(width * height),
             ..Statistics::default()
         };
-        let film = Film::new(width, height);
+        let film = Film::with(width, height, planes);
         Ok(Frame { film, statistics })
     }
 }
@@ -261,7 +266,12 @@ fn what_cannot_be_rendered_is_said() {
 struct Lost;
 
 impl Renderer for Lost {
-    fn render(&self, _: &Scene, _: &dyn Observer) -> Result<Frame, RenderError> {
+    fn render_planes(
+        &self,
+        _: &Scene,
+        _: &[Plane],
+        _: &dyn Observer,
+    ) -> Result<Frame, RenderError> {
         Err(RenderError::Device {
             reason: "it was pulled out".into(),
             advice: None,
@@ -293,7 +303,12 @@ fn a_window_that_closes_waits_for_nothing() {
 struct Moody;
 
 impl Renderer for Moody {
-    fn render(&self, scene: &Scene, observer: &dyn Observer) -> Result<Frame, RenderError> {
+    fn render_planes(
+        &self,
+        scene: &Scene,
+        planes: &[Plane],
+        observer: &dyn Observer,
+    ) -> Result<Frame, RenderError> {
         let name = scene.objects.first().map_or("", |o| o.name.as_str());
         assert!(name != "bad", "planted");
         if name == "slow" {
@@ -303,7 +318,7 @@ impl Renderer for Moody {
             return Err(RenderError::Cancelled);
         }
         let [width, height] = scene.settings.size;
-        let (film, statistics) = (Film::new(width, height), Statistics::default());
+        let (film, statistics) = (Film::with(width, height, planes), Statistics::default());
         Ok(Frame { film, statistics })
     }
 }

@@ -456,7 +456,8 @@ impl Reader {
                 let placement = Placement {
                     rotation: rotation.unwrap_or(identity.rotation),
                     scale: scale.unwrap_or(1.0),
-                    offset: member(map, "offset", |v| array(v, number))?.unwrap_or_default(),
+                    offset: member(map, "offset", |v| array(v, single(f32::MIN, f32::MAX)))?
+                        .unwrap_or_default(),
                     turns: rotation.is_some(),
                     scales: scale.is_some(),
                 };

@@ -4,7 +4,7 @@ use crate::compare::{beside_edge, same};
 use crate::scenes::{blend, quick, reference, stream, tomczak};
 use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::scene::Scene;
-use zeroset_scene::settings::{March, Settings};
+use zeroset_scene::settings::{March, Settings, Shadow};
 use zeroset_trace::CpuRenderer;
 use zeroset_trace::bench::city;
 use zeroset_trace::plain::dense;
@@ -138,7 +138,10 @@ fn relaxation_and_cones_save_evaluations() {
 fn rays_out_of_steps_take_their_best_candidate() {
     let mut scene = tomczak();
     scene.camera.eye.y = 1.9;
-    scene.lights.clear();
+    scene
+        .lights
+        .iter_mut()
+        .for_each(|l| l.shadow = Shadow::None);
     scene.settings = Settings {
         max_steps: 6,
         prepass: false,

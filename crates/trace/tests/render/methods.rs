@@ -87,8 +87,12 @@ fn sampled_occlusion() {
             rays: 8,
             reach: None,
         },
+        Occlusion::Hemisphere {
+            rays: 16,
+            reach: Some(2.0),
+        },
         Occlusion::Obscurance {
-            rays: 8,
+            rays: 16,
             reach: Some(2.0),
             tau: 1.0,
         },
