@@ -52,6 +52,14 @@ fn scene(path: &Path) -> Scene {
         .unwrap_or_else(|e| panic!("{}: {e}", path.display()))
         .scene;
     scene.settings.antialias = Antialias::None;
+    let picture = CpuRenderer::new(None)
+        .unwrap()
+        .prepare(&scene)
+        .expect("a program");
+    if picture.program().is_fractal() {
+        // rays end anywhere under the footprint: these steps put them where the value is the footprint
+        scene.settings.discontinuity_reduction = 16;
+    }
     scene
 }
 
@@ -74,6 +82,9 @@ fn reference(scene: &Scene) -> Film {
     )
 }
 
+/// Share of a plane that may differ in any scene.
+const MOST: f64 = 0.03;
+
 /// How much a plane changes where every ray stops a twentieth of a pixel earlier. Fractals, noise and far cities have detail
 /// finer than a pixel: what is seen of it hangs on the last bits of a hit, in any renderer.
 fn restless(scene: &Scene) -> impl Fn(&Budget) -> f64 {
@@ -88,7 +99,7 @@ fn restless(scene: &Scene) -> impl Fn(&Budget) -> f64 {
 fn check(name: &str, scene: &Scene, film: &Film, reference: &Film) -> Option<String> {
     let restless = restless(scene);
     let budgets = BUDGETS.map(|budget| Budget {
-        share: budget.share + 3.0 * restless(&budget) + 0.0005,
+        share: (budget.share + 2.0 * restless(&budget)).min(MOST),
         ..budget
     });
     let off = differing(scene, film, reference, &budgets);
@@ -225,8 +236,13 @@ fn methods() -> Vec<(String, Scene)> {
     }
     with(&|s| s.settings.prepass = false);
     with(&|s| s.settings.discontinuity_reduction = 0);
-    // rays that run out of steps are not compared: the CPU searches the rest of them, the GPU has no ranges to do so
     with(&|s| s.settings.hit_selection = false);
+    // without cones: rays that run out of steps stop where they are. (With hit selection they are not compared: the CPU searches
+    // the rest of them, the GPU has no ranges to do so.)
+    with(&|s| {
+        (s.settings.max_steps, s.settings.prepass) = (12, false);
+        s.settings.hit_selection = false;
+    });
     all
 }
 
@@ -263,7 +279,7 @@ fn the_gpu_filters_as_the_cpu() {
             let pairs = a.plane(plane).iter().zip(b.plane(plane));
             let square: f32 = pairs.map(|(x, y)| (x - y) * (x - y)).sum();
             let rms = (square / a.plane(plane).len() as f32).sqrt();
-            assert!(rms < 0.02, "{filter:?} {plane:?}: {rms}");
+            assert!(rms < 0.01, "{filter:?} {plane:?}: {rms}");
         }
     }
 }
@@ -322,8 +338,8 @@ fn the_light_at_the_foot_of_a_wall_comes_from_the_open_side() {
 const FAULTS: [(&str, &str, &str, Plane); 10] = [
     (
         "rays that stop too early",
-        "return Found(true, t + z, 0.0, side, steps - REFINEMENTS);",
-        "return Found(true, t + z - 0.05, 0.0, side, steps - REFINEMENTS);",
+        "return Found(true, t, 0.0, side, steps - REFINEMENTS);",
+        "return Found(true, t - 0.05, 0.0, side, steps - REFINEMENTS);",
         Plane::Depth,
     ),
     (

@@ -60,11 +60,9 @@ fn save(path: &Path, picture: &Picture) {
 
 /// Holds the picture of a scene against the one that was judged; the message if it differs.
 fn check(path: &Path, group: &str, film: &Film) -> Result<(), String> {
-    let name = format!(
-        "{group}/{}.png",
-        path.file_stem().unwrap().to_string_lossy()
-    );
-    let golden = folder("tests/golden").join(&name);
+    let file = Path::new(group).join(path.with_extension("png").file_name().unwrap());
+    let golden = folder("tests/golden").join(&file);
+    let name = file.display();
     let picture = Picture::develop(film, 0.0);
     if std::env::var_os("ZEROSET_BLESS").is_some() {
         save(&golden, &picture);
@@ -76,7 +74,7 @@ fn check(path: &Path, group: &str, film: &Film) -> Result<(), String> {
     }
     let new = Path::new(env!("CARGO_TARGET_TMPDIR"))
         .join("golden")
-        .join(&name);
+        .join(&file);
     save(&new, &picture);
     Err(format!(
         "{name}: FLIP {:.4}, allowed {ALLOWED}; the new picture is {}",
