@@ -13,10 +13,12 @@ use zeroset_scene::settings::{March, Normals};
 /// precision would show as noise.
 const LEAST_STEP: f32 = 1.0 / 16384.0;
 
-/// Halvings of the part of a ray in which the sign changes, each by a guess that is nearly right.
+/// Guesses, at most, of where the sign changes.
 const ROUNDS: u32 = 3;
 /// As many where that part is a step of constant length.
 const FIXED_ROUNDS: u32 = 10;
+/// A guess is right where the next one is nearer than this share of the footprint's radius.
+const SETTLED: f32 = 1.0 / 256.0;
 /// Finds the points where the sign changes, and the values there if they are wanted; then, `rounds` times, puts hits where the
 /// footprint of their pixel meets the surface (Keinert 2014, 3.4, equations 2 and 3).
 pub(crate) fn place<S: Simd>(
@@ -125,7 +127,9 @@ fn refine<S: Simd>(s: S, solid: &Solid<'_>, rounds: u32, k: usize, n: usize, q: 
             },
         );
         q.counts.march += n as u64;
+        let mut moves = false;
         for i in (0..n).step_by(S::f32s::LEN) {
+            let wanted = near(s, solid, &q.hits, k + i) * SETTLED;
             let hits = &mut q.hits;
             let value = sided(
                 load(s, &q.work.values().0, i),
@@ -148,6 +152,12 @@ fn refine<S: Simd>(s: S, solid: &Solid<'_>, rounds: u32, k: usize, n: usize, q: 
             store(Lanes::select(open, front, f), &mut hits.f, k + i);
             let back = Lanes::select(past, value, behind * keep_back);
             store(Lanes::select(open, back, behind), &mut hits.behind, k + i);
+            let next = load(s, &hits.t, k + i) + zero(s, hits, k + i);
+            let settled = (next - t - by).abs().below(wanted);
+            moves |= (open & !settled & first_lanes(s, n - i)).0.to_bitmask() != 0;
+        }
+        if !moves {
+            break;
         }
     }
     for i in (0..n).step_by(S::f32s::LEN) {

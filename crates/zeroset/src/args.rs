@@ -55,7 +55,7 @@ pub(crate) struct Global {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Open a window on a scene: fly through it, move its sliders, compare methods. `zeroset SCENE` does the same
-    #[cfg(feature = "viewer")]
+    #[cfg(feature = "window")]
     View(View),
     /// Render a scene to a picture
     Render(Render),
@@ -159,7 +159,7 @@ pub(crate) struct Render {
     pub json: bool,
 }
 
-#[cfg(feature = "viewer")]
+#[cfg(feature = "window")]
 #[derive(Debug, Args)]
 pub(crate) struct View {
     #[command(flatten)]

@@ -221,7 +221,7 @@ pub(crate) fn refused(backend: Backend, adapter: Option<&str>) -> Result<(), Fai
         return Err(Failure::with_help(
             Exit::Job,
             "this zeroset was built without the GPU's renderer",
-            "build it with the feature `gpu`, or leave out --backend and --adapter",
+            "build it with `cargo build --release --features gpu`, or leave out --backend and --adapter",
         ));
     }
     Ok(())

@@ -211,7 +211,7 @@ impl Console {
 }
 
 /// What went wrong as [`Console::report`] says it, without colours.
-#[cfg(feature = "viewer")]
+#[cfg(feature = "window")]
 pub(crate) fn plain_report(report: &dyn Diagnostic) -> String {
     themed(GraphicalTheme::unicode_nocolor(), report)
 }

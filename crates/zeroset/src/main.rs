@@ -41,7 +41,7 @@ fn main() -> ExitCode {
         command.try_get_matches_from(arguments)
     };
     let mut parsed = parse(&arguments);
-    if cfg!(feature = "viewer")
+    if cfg!(feature = "window")
         && let Some(place) = parsed.as_ref().err().and_then(scene_as_command)
         && let Some(place) = arguments.iter().position(|a| *a == *place)
     {
@@ -60,6 +60,11 @@ fn main() -> ExitCode {
             }
             if let Some(scene) = scene_as_command(&error) {
                 say(&format!("\nTo render it: zeroset render {scene}"));
+            }
+            if let Some(feature) = left_out(&error) {
+                say(&format!(
+                    "\nThis zeroset was built without the {feature}: cargo build --release --features {feature}"
+                ));
             }
             return ExitCode::from(if error.use_stderr() {
                 Exit::Usage
@@ -82,7 +87,7 @@ fn main() -> ExitCode {
 
 fn run(command: &Command, console: &Console) -> Result<(), Failure> {
     match command {
-        #[cfg(feature = "viewer")]
+        #[cfg(feature = "window")]
         Command::View(args) => command::view::run(args),
         Command::Render(args) => render::run(args, console),
         Command::Check(args) => command::check::run(args, console),
@@ -114,6 +119,18 @@ fn scene_as_command(error: &clap::Error) -> Option<&str> {
     };
     let ending = Path::new(given).extension()?;
     (ending == "star" || ending == "json").then_some(given)
+}
+
+/// The feature that a command is in which this build leaves out; a scene without a command wants a window.
+fn left_out(error: &clap::Error) -> Option<&'static str> {
+    let given = match error.get(ContextKind::InvalidSubcommand) {
+        Some(ContextValue::String(given)) => given.as_str(),
+        _ => return None,
+    };
+    let window = given == "view" || scene_as_command(error).is_some();
+    [("window", window), ("gpu", given == "gpu")]
+        .into_iter()
+        .find_map(|(feature, wanted)| wanted.then_some(feature))
 }
 
 /// `--color`, before the command line is read: its own messages want to know.

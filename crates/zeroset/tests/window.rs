@@ -3,7 +3,7 @@
 //!
 //! Where the tools or a device are missing, the test says so and passes, unless `ZEROSET_REQUIRE_GPU=1`.
 
-#![cfg(all(target_os = "linux", feature = "viewer"))]
+#![cfg(all(target_os = "linux", feature = "window"))]
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read};

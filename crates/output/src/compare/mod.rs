@@ -1,6 +1,5 @@
 //! How different two pictures are: by number, by structure, and to the eye.
 
-pub mod conform;
 mod flip;
 mod plane;
 mod ssim;

@@ -1,10 +1,10 @@
 //! Whether two films show the same, other than beside silhouettes.
 
-use zeroset_output::compare::conform::{self, BUDGETS, Difference};
 use zeroset_scene::film::Film;
 use zeroset_scene::scene::Scene;
+use zeroset_testkit::conform::{self, BUDGETS, Difference};
 
-pub use zeroset_output::compare::conform::beside_edge;
+pub use zeroset_testkit::conform::beside_edge;
 
 /// The planes that differ by more than is allowed.
 pub fn differing(scene: &Scene, a: &Film, b: &Film) -> Vec<Difference> {

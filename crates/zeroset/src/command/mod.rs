@@ -10,5 +10,5 @@ pub(crate) mod fields;
 pub(crate) mod gpu;
 pub(crate) mod init;
 pub(crate) mod slice;
-#[cfg(feature = "viewer")]
+#[cfg(feature = "window")]
 pub(crate) mod view;

@@ -22,7 +22,6 @@ pub(crate) fn run(args: &View) -> Result<(), Failure> {
 
 /// What renders. A GPU that is asked for must be there before the window opens; one that may be there is looked for while
 /// it opens.
-#[cfg(feature = "gpu")]
 fn backend(args: &View) -> Result<MakeBackend, Failure> {
     use crate::backend::{Backend as Asked, gpu};
     let threads = args.threads.map(usize::from);
@@ -41,11 +40,4 @@ fn backend(args: &View) -> Result<MakeBackend, Failure> {
         Some(renderer) => Ok(on_gpu(renderer)),
         None => Backend::cpu(threads),
     }))
-}
-
-#[cfg(not(feature = "gpu"))]
-fn backend(args: &View) -> Result<MakeBackend, Failure> {
-    crate::backend::refused(args.backend, args.adapter.as_deref())?;
-    let threads = args.threads.map(usize::from);
-    Ok(Box::new(move || Backend::cpu(threads)))
 }

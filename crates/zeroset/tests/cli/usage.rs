@@ -37,17 +37,24 @@ fn no_command_prints_help_and_is_no_success() {
     assert!(ended.err.contains("Usage: zeroset") && ended.out.is_empty());
 }
 
-#[cfg(not(feature = "viewer"))]
+#[cfg(not(feature = "window"))]
 #[test]
 fn a_scene_without_a_command_names_the_command() {
     let folder = Folder::with(BALL);
-    folder.bad("scene.star", 2, &["zeroset render scene.star"]);
+    let says = ["zeroset render scene.star", "--features window"];
+    folder.bad("scene.star", 2, &says);
     folder.bad("some.json", 2, &["zeroset render some.json"]);
+    folder.bad(
+        "view scene.star",
+        2,
+        &["without the window", "--features window"],
+    );
+    folder.bad("gpu", 2, &["without the gpu", "--features gpu"]);
     folder.bad("rende", 2, &["render"]);
 }
 
 /// Without a screen, so that no window opens.
-#[cfg(all(feature = "viewer", target_os = "linux"))]
+#[cfg(all(feature = "window", target_os = "linux"))]
 #[test]
 fn a_scene_without_a_command_is_viewed() {
     let folder = Folder::with(BALL);

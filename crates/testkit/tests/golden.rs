@@ -1,7 +1,7 @@
 //! Every scene of `scenes/` renders, and looks as it did when somebody last judged it by eye.
 //!
 //! A picture that differs is written to the target folder beside its difference, and the message says how to bless it:
-//! `ZEROSET_BLESS=1 cargo test -p zeroset --test golden`. Look at it first.
+//! `ZEROSET_BLESS=1 cargo test -p zeroset-testkit --test golden`. Look at it first.
 
 use std::path::{Path, PathBuf};
 use zeroset::output::compare::compare;
@@ -14,24 +14,17 @@ use zeroset::scene::load::{Options, load};
 use zeroset::scene::render::{Renderer, Silent};
 use zeroset::scene::settings::Antialias;
 use zeroset::trace::CpuRenderer;
+use zeroset_testkit::scenes;
 
 /// Side of the pictures.
 const SIDE: u32 = 96;
 /// FLIP's mean error that a picture may have: rounding moves a hit here and there, a wrong method moves everything.
 const ALLOWED: f64 = 0.01;
 
-fn folder(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
-}
-
-/// The scenes of a folder of `scenes/`, sorted.
-fn scenes(group: &str) -> Vec<PathBuf> {
-    let read = std::fs::read_dir(folder("../../scenes").join(group)).unwrap();
-    let mut found: Vec<PathBuf> = (read.map(|entry| entry.unwrap().path()))
-        .filter(|path| path.extension().is_some_and(|e| e == "star"))
-        .collect();
-    found.sort();
-    found
+fn golden(file: impl AsRef<Path>) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/golden")
+        .join(file)
 }
 
 fn render(path: &Path) -> Film {
@@ -61,7 +54,7 @@ fn save(path: &Path, picture: &Picture) {
 /// Holds the picture of a scene against the one that was judged; the message if it differs.
 fn check(path: &Path, group: &str, film: &Film) -> Result<(), String> {
     let file = Path::new(group).join(path.with_extension("png").file_name().unwrap());
-    let golden = folder("tests/golden").join(&file);
+    let golden = golden(&file);
     let name = file.display();
     let picture = Picture::develop(film, 0.0);
     if std::env::var_os("ZEROSET_BLESS").is_some() {
@@ -84,12 +77,12 @@ fn check(path: &Path, group: &str, film: &Film) -> Result<(), String> {
 }
 
 fn all(group: &str) {
-    let failures: Vec<String> = (scenes(group).iter())
+    let failures: Vec<String> = (scenes::of(group).iter())
         .filter_map(|path| check(path, group, &render(path)).err())
         .collect();
     assert!(
         failures.is_empty(),
-        "{}\nlook at the new pictures, then: ZEROSET_BLESS=1 cargo test -p zeroset --test golden",
+        "{}\nlook at the new pictures, then: ZEROSET_BLESS=1 cargo test -p zeroset-testkit --test golden",
         failures.join("\n")
     );
 }
@@ -106,7 +99,7 @@ fn the_first_scene_looks_as_judged() {
 
 #[test]
 fn every_scene_of_the_gallery_renders_something() {
-    for path in scenes("gallery") {
+    for path in scenes::of("gallery") {
         let film = render(&path);
         let hit = film
             .plane(Plane::Coverage)
@@ -131,7 +124,7 @@ fn every_scene_of_the_gallery_renders_something() {
 /// The comparison can fail: a picture with another sun is not the golden one.
 #[test]
 fn a_wrong_light_is_noticed() {
-    let path = folder("../../scenes/papers/tomczak_sphere_ground_1.star");
+    let path = scenes::folder().join("papers/tomczak_sphere_ground_1.star");
     let options = Options {
         size: Some([SIDE, SIDE]),
         ..Options::default()
@@ -144,7 +137,7 @@ fn a_wrong_light_is_noticed() {
         .render(&scene, &Silent)
         .unwrap()
         .film;
-    let golden = read(&folder("tests/golden/papers/tomczak_sphere_ground_1.png")).unwrap();
-    let found = compare(&golden, &Picture::develop(&film, 0.0)).unwrap();
+    let kept = read(&golden("papers/tomczak_sphere_ground_1.png")).unwrap();
+    let found = compare(&kept, &Picture::develop(&film, 0.0)).unwrap();
     assert!(found.flip_mean > ALLOWED, "FLIP {}", found.flip_mean);
 }

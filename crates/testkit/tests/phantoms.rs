@@ -1,7 +1,6 @@
 //! No phantom surfaces: behind every hit of every scene, seen from its own camera, from the front, the side and above, the field
 //! is negative, in double precision.
 
-use std::path::{Path, PathBuf};
 use zeroset::field::eval::Point;
 use zeroset::field::number::{F64, v3};
 use zeroset::field::program::Program;
@@ -12,17 +11,7 @@ use zeroset::scene::render::{Renderer, Silent};
 use zeroset::scene::scene::Scene;
 use zeroset::scene::settings::{Antialias, Occlusion};
 use zeroset::trace::CpuRenderer;
-
-fn scenes(folder: &Path, out: &mut Vec<PathBuf>) {
-    for entry in std::fs::read_dir(folder).expect("the folder of scenes") {
-        let path = entry.expect("an entry").path();
-        match path.extension().and_then(|e| e.to_str()) {
-            _ if path.is_dir() => scenes(&path, out),
-            Some("star") => out.push(path),
-            _ => {}
-        }
-    }
-}
+use zeroset_testkit::scenes;
 
 /// The scene's own view, then parallel ones along the axes that stand on the floor.
 fn views(scene: &Scene) -> Vec<Camera> {
@@ -84,15 +73,9 @@ fn phantoms(scene: &Scene, film: &Film, program: &Program) -> usize {
 
 #[test]
 fn behind_every_hit_is_a_solid() {
-    let mut all = Vec::new();
-    scenes(
-        &Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes"),
-        &mut all,
-    );
-    all.sort();
     let renderer = CpuRenderer::new(None).expect("threads");
     let mut failures = Vec::new();
-    for path in all {
+    for path in scenes::all() {
         let options = Options {
             size: Some([40, 40]),
             ..Options::default()

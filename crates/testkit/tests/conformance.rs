@@ -3,9 +3,8 @@
 //!
 //! The GPU's part runs on any adapter, software included, and says why it did not run where there is none.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use zeroset::gpu::{GpuRenderer, testing};
-use zeroset::output::compare::conform::{BUDGETS, Budget, Difference, compare, differing};
 use zeroset::scene::film::{Film, Plane};
 use zeroset::scene::load::{Language, Options, load, load_text};
 use zeroset::scene::render::{Renderer, Silent};
@@ -16,31 +15,19 @@ use zeroset::scene::settings::{
 use zeroset::shader::FieldForm;
 use zeroset::trace::CpuRenderer;
 use zeroset::trace::plain::{self, Compiled, Quality};
+use zeroset_testkit::conform::{BUDGETS, Budget, Difference, compare, differing};
+use zeroset_testkit::scenes;
 
 #[path = "conformance/large.rs"]
 mod large;
 
 const SIZE: [u32; 2] = [96, 72];
 
-fn folder(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
-}
-
 /// Every scene that shows something, with one ray through the middle of every pixel.
-fn scenes() -> Vec<(String, Scene)> {
-    let mut found = Vec::new();
-    for group in ["", "papers", "gallery"] {
-        let entries = std::fs::read_dir(folder("../../scenes").join(group)).unwrap();
-        for path in entries.map(|entry| entry.unwrap().path()) {
-            if path.extension().is_some_and(|e| e == "star") {
-                let name = path.file_stem().unwrap().to_string_lossy();
-                found.push((format!("{group}/{name}"), scene(&path)));
-            }
-        }
-    }
-    found.sort_by(|a, b| a.0.cmp(&b.0));
-    assert!(found.len() > 20);
-    found
+fn every_scene() -> Vec<(String, Scene)> {
+    let all = scenes::all().into_iter();
+    all.map(|path| (scenes::name(&path), scene(&path)))
+        .collect()
 }
 
 fn scene(path: &Path) -> Scene {
@@ -64,7 +51,7 @@ fn scene(path: &Path) -> Scene {
 }
 
 fn hello() -> Scene {
-    scene(&folder("../../scenes/hello.star"))
+    scene(&scenes::folder().join("hello.star"))
 }
 
 fn on(renderer: &dyn Renderer, scene: &Scene) -> Film {
@@ -116,7 +103,7 @@ fn none(failures: Vec<String>) {
 #[test]
 fn the_simd_renderer_shows_every_scene_as_the_plain_one() {
     let renderer = CpuRenderer::new(None).unwrap();
-    let all = scenes().into_iter().filter_map(|(name, scene)| {
+    let all = every_scene().into_iter().filter_map(|(name, scene)| {
         check(&name, &scene, &on(&renderer, &scene), &reference(&scene))
     });
     none(all.collect());
@@ -128,7 +115,7 @@ fn the_gpu_shows_every_scene_as_the_simd_renderer() {
         return;
     };
     let renderer = CpuRenderer::new(None).unwrap();
-    let all = scenes().into_iter().filter_map(|(name, scene)| {
+    let all = every_scene().into_iter().filter_map(|(name, scene)| {
         check(&name, &scene, &on(&gpu, &scene), &on(&renderer, &scene))
     });
     none(all.collect());
@@ -142,12 +129,12 @@ fn an_interpreted_field_is_the_compiled_one() {
     let gpu = gpu.with_form(FieldForm::Interpreted);
     let renderer = CpuRenderer::new(None).unwrap();
     let few = [
-        "/hello",
+        "hello",
         "papers/keinert_city",
         "gallery/joins",
         "gallery/julia",
     ];
-    let all = scenes()
+    let all = every_scene()
         .into_iter()
         .filter(|(name, _)| few.contains(&name.as_str()))
         .filter_map(|(name, scene)| {
