@@ -325,8 +325,8 @@ fn the_light_at_the_foot_of_a_wall_comes_from_the_open_side() {
 const FAULTS: [(&str, &str, &str, Plane); 10] = [
     (
         "rays that stop too early",
-        "return Found(true, t, 0.0, side, steps - REFINEMENTS);",
-        "return Found(true, t - 0.05, 0.0, side, steps - REFINEMENTS);",
+        "return Found(true, bracket_root(part), 0.0, side, steps - refined, refined);",
+        "return Found(true, bracket_root(part) - 0.05, 0.0, side, steps - refined, refined);",
         Plane::Depth,
     ),
     (

@@ -165,7 +165,6 @@ impl<'a> Job<'a> {
         place(
             s,
             solid,
-            settings.march,
             settings.discontinuity_reduction,
             self.wants(Plane::Residual),
             q,

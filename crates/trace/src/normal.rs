@@ -7,39 +7,35 @@ use crate::tile::{Hits, Scratch, Solid};
 use fearless_simd::{Simd, prelude::*};
 use zeroset_field::eval::{self, BATCH, Lane, Workspace};
 use zeroset_field::number::{Lanes, Ops, Real, Vec3, v3};
-use zeroset_scene::settings::{March, Normals};
+use zeroset_scene::settings::Normals;
 
 /// Least distance between the samples of a normal, as a share of the largest coordinate: with less, the rounding of single
 /// precision would show as noise.
 const LEAST_STEP: f32 = 1.0 / 16384.0;
 
-/// Guesses, at most, of where the sign changes.
-const ROUNDS: u32 = 3;
-/// As many where that part is a step of constant length.
-const FIXED_ROUNDS: u32 = 10;
-/// A guess is right where the next one is nearer than this share of the footprint's radius.
+/// Guesses, at most, of where the sign changes. Most places are found by one or two.
+const ROUNDS: u32 = 24;
+/// One guess of so many is the middle: far from straight, false position hardly moves.
+const MIDDLE: u32 = 3;
+/// A guess is right where a straight line leads from it to the surface within this share of the footprint's radius.
 const SETTLED: f32 = 1.0 / 256.0;
+
 /// Finds the points where the sign changes, and the values there if they are wanted; then, `rounds` times, puts hits where the
 /// footprint of their pixel meets the surface (Keinert 2014, 3.4, equations 2 and 3).
 pub(crate) fn place<S: Simd>(
     s: S,
     solid: &Solid<'_>,
-    march: March,
     rounds: u32,
     residual: bool,
     q: &mut Scratch,
 ) {
-    let refinements = match march {
-        March::Fixed { .. } => FIXED_ROUNDS,
-        _ => ROUNDS,
-    };
     s.vectorize(
         #[inline(always)]
         || {
             for k in (0..q.hits.count).step_by(BATCH) {
                 let n = (q.hits.count - k).min(BATCH);
                 if q.hits.beyond[k..k + n].iter().any(|z| *z > 0.0) {
-                    refine(s, solid, refinements, k, n, q);
+                    refine(s, solid, k, n, q);
                 }
                 for _ in 0..rounds {
                     if solid.stop.is_set() {
@@ -107,13 +103,23 @@ fn zero<S: Simd>(s: S, hits: &Hits, i: usize) -> Lanes<S> {
     load(s, &hits.beyond, i) * share.clamp01()
 }
 
+/// The next guess of where the sign changes, from the beginning of the part of a ray.
+#[inline(always)]
+fn guess<S: Simd>(s: S, hits: &Hits, i: usize, round: u32) -> Lanes<S> {
+    if round.is_multiple_of(MIDDLE) {
+        load(s, &hits.beyond, i) * 0.5
+    } else {
+        zero(s, hits, i)
+    }
+}
+
 /// Finds where the sign changes: false position, with the value at the end that stays a second time halved (Illinois; Dowell
 /// and Jarratt 1971).
 #[inline(always)]
-fn refine<S: Simd>(s: S, solid: &Solid<'_>, rounds: u32, k: usize, n: usize, q: &mut Scratch) {
+fn refine<S: Simd>(s: S, solid: &Solid<'_>, k: usize, n: usize, q: &mut Scratch) {
     // 1 where the last guess was before the surface, -1 where it was behind it
     let mut last = Lane::ZERO;
-    for _ in 0..rounds {
+    for round in 1..=ROUNDS {
         let hits = &q.hits;
         values_at(
             s,
@@ -123,7 +129,7 @@ fn refine<S: Simd>(s: S, solid: &Solid<'_>, rounds: u32, k: usize, n: usize, q: 
             #[inline(always)]
             |i| {
                 let (o, d) = solid.view.split(load3(s, &hits.ray, k + i));
-                along(o, d, load(s, &hits.t, k + i) + zero(s, hits, k + i))
+                along(o, d, load(s, &hits.t, k + i) + guess(s, hits, k + i, round))
             },
         );
         q.counts.march += n as u64;
@@ -135,7 +141,7 @@ fn refine<S: Simd>(s: S, solid: &Solid<'_>, rounds: u32, k: usize, n: usize, q: 
                 load(s, &q.work.values().0, i),
                 load_words(s, &hits.word, k + i),
             );
-            let by = zero(s, hits, k + i);
+            let by = guess(s, hits, k + i, round);
             let (t, beyond) = (load(s, &hits.t, k + i), load(s, &hits.beyond, k + i));
             let (f, behind) = (load(s, &hits.f, k + i), load(s, &hits.behind, k + i));
             let (open, past) = (beyond.above(0.0), value.below(0.0));
@@ -152,11 +158,14 @@ fn refine<S: Simd>(s: S, solid: &Solid<'_>, rounds: u32, k: usize, n: usize, q: 
             store(Lanes::select(open, front, f), &mut hits.f, k + i);
             let back = Lanes::select(past, value, behind * keep_back);
             store(Lanes::select(open, back, behind), &mut hits.behind, k + i);
-            let next = load(s, &hits.t, k + i) + zero(s, hits, k + i);
-            let settled = (next - t - by).abs().below(wanted);
+            // from the end that moved to the guess: how far a line through both leads on
+            let wanted = wanted.max(t * f32::EPSILON);
+            let length = Lanes::select(past, beyond - by, by);
+            let fall = Lanes::select(past, value - behind, f - value);
+            let settled = (value.abs() * length).below(fall * wanted) | rest.below(wanted);
             moves |= (open & !settled & first_lanes(s, n - i)).0.to_bitmask() != 0;
         }
-        if !moves {
+        if !moves || solid.stop.is_set() {
             break;
         }
     }

@@ -7,6 +7,8 @@ struct Ray {
 
 /// Evaluations in single precision are off by about this share of the largest coordinate.
 const ROUNDING: f32 = 4.7683716e-7;
+/// Between 1 and the next number.
+const EPSILON: f32 = 1.1920929e-7;
 /// A number that no distance of a scene reaches.
 const FAR: f32 = 3.0e38;
 

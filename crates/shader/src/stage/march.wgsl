@@ -12,8 +12,6 @@ const GUESS_LONGEST: f32 = 64.0;
 const FINE_ROWS: f32 = 512.0;
 /// A ray goes towards a surface where the value falls by more than this along it.
 const TOWARDS: f32 = 0.02;
-/// Guesses of where the sign changes, between places where it has.
-const REFINEMENTS: u32 = 3u;
 
 /// Marches a ray from `start` to `end`. `slope` is the field's slope along it, as far as it is known.
 fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
@@ -34,27 +32,28 @@ fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
     var coming = false;
     var towards = false;
     var progress = begin_steps(slope);
-    // how often the place of the change of sign is still guessed, and where it is
-    var left = 0u;
+    // whether the sign has changed, where, and how often that was sampled
+    var crossed = false;
     var part = Bracket();
+    var refined = 0u;
     for (var steps = 1u; steps <= frame.max_steps; steps++) {
         let to = t + z;
         let p = ray.origin + ray.direction * to;
         var next = side * field(p);
-        if (left > 0u) {
-            part = bracket_narrowed(part, to, next);
-            t = bracket_root(part);
-            z = 0.0;
-            left -= 1u;
-            if (left == 0u) {
-                return Found(true, t, 0.0, side, steps - REFINEMENTS);
-            }
-            continue;
-        }
         let rounding = frame.rounding.x * to + frame.rounding.y;
         let radius = foot * (frame.pixel.x * to * narrow + frame.pixel.y);
-        let least = radius * share + 4.0 * rounding;
         let limit = radius + rounding;
+        if (crossed) {
+            let settled = bracket_settled(part, to, next, max(limit * SETTLED, to * EPSILON));
+            part = bracket_narrowed(part, to, next);
+            refined += 1u;
+            if (settled || refined == REFINEMENTS) {
+                return Found(true, bracket_root(part), 0.0, side, steps - refined, refined);
+            }
+            t = bracket_guess(part, refined);
+            continue;
+        }
+        let least = radius * share + 4.0 * rounding;
         guess = guess && steps > 1u;
         var root = 0.0;
         if (steps == 1u) {
@@ -65,12 +64,12 @@ fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
             let behind = next < behind_surface(p) || (next < 0.0 && r < 0.0);
             if (behind && (!gap || guess)) {
                 if (fractal) {
-                    return Found(true, to, next, side, steps);
+                    return Found(true, to, next, side, steps, 0u);
                 }
                 part = Bracket(t, max(r, 0.0), to, next, 0.0);
                 t = bracket_root(part);
                 z = 0.0;
-                left = REFINEMENTS;
+                crossed = true;
                 continue;
             }
             if (gap) {
@@ -90,10 +89,10 @@ fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
         t = to;
         r = next;
         if (fractal && r < limit) {
-            return Found(true, t, r, side, steps);
+            return Found(true, t, r, side, steps, 0u);
         }
         if (t + max(r, 0.0) >= end) {
-            return Found(false, t, r, side, steps);
+            return Found(false, t, r, side, steps, 0u);
         }
         // steps that are longer than the radius are tested, and must be so long that they are
         let step = next_step(progress, r);
@@ -102,10 +101,10 @@ fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
         guess = !fractal && steps > 1u && falling && r >= 0.0 && sure && root > z;
         z = min(select(z, root, guess), end - t);
     }
-    if (left > 0u) {
-        return Found(true, t, 0.0, side, frame.max_steps);
+    if (crossed) {
+        return Found(true, bracket_root(part), 0.0, side, frame.max_steps - refined, refined);
     }
     // out of steps: a surface only where the ray is within a pixel of it, and gets there or nobody asked whether it does
     let near = fractal || (is_close() && (coming || frame.hit_selection == 0u));
-    return Found(near && r < 2.0 * footprint(ray, t), t, r, side, frame.max_steps);
+    return Found(near && r < 2.0 * footprint(ray, t), t, r, side, frame.max_steps, 0u);
 }

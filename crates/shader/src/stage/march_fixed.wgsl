@@ -1,28 +1,26 @@
 // Constant steps, then false position where the sign changes (Tomczak 2012, algorithm 2.1; Munini 2021, 3.2).
 
-/// Guesses of where the sign changes, between places where it has.
-const REFINEMENTS: u32 = 10u;
-
 fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
     var t = start;
     var z = 0.0;
     var r = 0.0;
     var side = 1.0;
-    // how often the place of the change of sign is still guessed, and where it is
-    var left = 0u;
+    // whether the sign has changed, where, and how often that was sampled
+    var crossed = false;
     var part = Bracket();
+    var refined = 0u;
     for (var steps = 1u; steps <= frame.max_steps; steps++) {
         let to = t + z;
         let p = ray.origin + ray.direction * to;
         var next = side * field(p);
-        if (left > 0u) {
+        if (crossed) {
+            let settled = bracket_settled(part, to, next, max(footprint(ray, to) * SETTLED, to * EPSILON));
             part = bracket_narrowed(part, to, next);
-            t = bracket_root(part);
-            z = 0.0;
-            left -= 1u;
-            if (left == 0u) {
-                return Found(true, t, 0.0, side, steps - REFINEMENTS);
+            refined += 1u;
+            if (settled || refined == REFINEMENTS) {
+                return Found(true, bracket_root(part), 0.0, side, steps - refined, refined);
             }
+            t = bracket_guess(part, refined);
             continue;
         }
         if (steps == 1u) {
@@ -32,15 +30,18 @@ fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
             part = Bracket(t, max(r, 0.0), to, next, 0.0);
             t = bracket_root(part);
             z = 0.0;
-            left = REFINEMENTS;
+            crossed = true;
             continue;
         }
         t = to;
         r = next;
         if (t >= end) {
-            return Found(false, t, r, side, steps);
+            return Found(false, t, r, side, steps, 0u);
         }
         z = min(frame.march, end - t);
     }
-    return Found(left > 0u, t, select(r, 0.0, left > 0u), side, frame.max_steps);
+    if (crossed) {
+        return Found(true, bracket_root(part), 0.0, side, frame.max_steps - refined, refined);
+    }
+    return Found(false, t, r, side, frame.max_steps, 0u);
 }

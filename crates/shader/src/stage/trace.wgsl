@@ -32,7 +32,7 @@ fn trace_ray(pixel: vec2u, index: u32, ray: Ray, span: vec3f) -> Sample {
         return background(ray, 0u);
     }
     let found = march(ray, start, end, span.y);
-    counted[COUNT_MARCH] += found.steps + select(0u, REFINEMENTS, found.hit);
+    counted[COUNT_MARCH] += found.steps + found.refined;
     if (!found.hit) {
         return background(ray, found.steps);
     }

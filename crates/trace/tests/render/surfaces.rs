@@ -58,6 +58,49 @@ fn shadow_of(f: impl Fn(f64, f64, f64) -> f64, h: f64, n: usize) -> f64 {
     f64::from(hits) / (n * n) as f64
 }
 
+/// How many pixels of an orthographic view along -z show a normal that is not that of the first root along their ray.
+fn turned(scene: &Scene, film: &Film, f: &dyn Fn(f64, f64, f64) -> f64) -> usize {
+    let [width, height] = scene.settings.size;
+    let view = zeroset_scene::view::View::new(&scene.camera, [width, height], 1.0);
+    let mut wrong = 0;
+    for (i, (x, y)) in (0..height)
+        .flat_map(|y| (0..width).map(move |x| (x, y)))
+        .enumerate()
+    {
+        if film.plane(Plane::Object)[i] == 0.0 || beside_edge(film, x as usize, y as usize) {
+            continue;
+        }
+        let (o, _) = view.split(view.ray(x as f32 + 0.5, y as f32 + 0.5));
+        let [x, y, _] = o.array().map(f64::from);
+        let along = |k: u32| 1.8 - 3.6 * f64::from(k) / 20_000.0;
+        let Some(k) = (1..20_000).find(|k| f(x, y, along(*k)) < 0.0) else {
+            continue;
+        };
+        let (mut outside, mut inside) = (along(k - 1), along(k));
+        for _ in 0..60 {
+            let middle = 0.5 * (outside + inside);
+            if f(x, y, middle) < 0.0 {
+                inside = middle;
+            } else {
+                outside = middle;
+            }
+        }
+        let h = 1e-6;
+        let slope = |d: [f64; 3]| {
+            let at = |s: f64| f(x + s * d[0], y + s * d[1], inside + s * d[2]);
+            (at(h) - at(-h)) as f32
+        };
+        let right = Vec3::new(
+            slope([1.0, 0.0, 0.0]),
+            slope([0.0, 1.0, 0.0]),
+            slope([0.0, 0.0, 1.0]),
+        );
+        let shown = Vec3::from_slice(&film.plane(Plane::Normal)[3 * i..][..3]);
+        wrong += usize::from(shown.dot(right.normalize()) < 0.95);
+    }
+    wrong
+}
+
 const FRONT: &str = "\ncamera(eye = (0, 0, 8), target = (0, 0, 0), lens = orthographic(3))";
 
 #[test]
@@ -92,6 +135,8 @@ fn a_loose_bound_does_not_inflate() {
     ];
     for (text, f) in cases {
         let scene = written(&format!("{text}{FRONT}"), 64);
+        let wrong = turned(&scene, &stream(&scene), f);
+        assert!(wrong <= 3, "{text}: {wrong} normals");
         let (found, right) = (share(&stream(&scene)), shadow_of(f, 1.5, 64));
         // the same rays: but for those that touch
         assert!(
