@@ -20,6 +20,7 @@ pub mod render;
 pub mod report;
 pub mod scene;
 pub mod settings;
+pub mod skin;
 mod trees;
 pub mod view;
 pub mod watch;

@@ -15,6 +15,7 @@ use zeroset_scene::material::{self, Pattern};
 use zeroset_scene::render::RenderError;
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Filter, March, Occlusion, Shadow};
+use zeroset_scene::skin::has_skins;
 use zeroset_scene::view::{Region, View};
 
 /// How the field gets into the shader.
@@ -172,7 +173,9 @@ impl Parts {
         };
         let (table, mut frame) = tables(scene, frame(scene, &region));
         frame.max_steps = program.patient(scene.settings.max_steps);
-        frame.quality = u32::from(program.is_fractal()) | u32::from(program.is_close()) << 1;
+        frame.quality = u32::from(program.is_fractal())
+            | u32::from(program.is_close()) << 1
+            | u32::from(has_skins(scene, &program)) << 2;
         Ok(Parts {
             key: Key::new(scene, &program, form, table.len()),
             frame,

@@ -62,11 +62,9 @@ fn reference(scene: &Scene) -> Film {
     let renderer = CpuRenderer::new(None).unwrap();
     let picture = renderer.prepare(scene).expect("a program");
     let program = picture.program();
-    plain::render(
-        scene,
-        &Quality::of(program, scene.settings.max_steps),
-        || Compiled::new(program, None),
-    )
+    plain::render(scene, &Quality::of(program, scene), || {
+        Compiled::new(program, None)
+    })
 }
 
 /// Share of a plane that may differ in any scene.
@@ -269,6 +267,41 @@ fn the_gpu_filters_as_the_cpu() {
             assert!(rms < 0.01, "{filter:?} {plane:?}: {rms}");
         }
     }
+}
+
+/// Light through holes whose cutters end where they leave the solid.
+#[test]
+fn skins_are_passed_alike() {
+    let text = "
+show((cylinder(1, 2) - cylinder(0.5, 2)).move(y = 1))
+show((box((3, 2, 0.4)) - box((1.6, 1.2, 0.4))).turn(y = 20).move((-0.5, 1, -2)))
+show(plane())
+camera(eye = (1.5, 4.5, 4), target = (0, 0.8, -0.5), fov = 45)
+sun(direction = (-0.3, -1, -0.6), shadow = soft(8))
+point_light(position = (2, 3, 1), shadow = soft_closest(6))
+";
+    let options = Options {
+        size: Some(SIZE),
+        ..Options::default()
+    };
+    let mut scene = load_text("skins.star", text, Language::Starlark, None, &options)
+        .unwrap_or_else(|e| panic!("{}", e.report))
+        .scene;
+    scene.settings.antialias = Antialias::None;
+    let film = on(&CpuRenderer::new(None).unwrap(), &scene);
+    none(
+        check("skins", &scene, &film, &reference(&scene))
+            .into_iter()
+            .collect(),
+    );
+    let Some(gpu) = testing::renderer("skins on the GPU") else {
+        return;
+    };
+    none(
+        check("skins", &scene, &on(&gpu, &scene), &film)
+            .into_iter()
+            .collect(),
+    );
 }
 
 /// A wall on a floor, white, under a sky that is as bright as high up it is: nothing else lights them.

@@ -19,6 +19,7 @@ use std::ops::Range;
 use zeroset_field::eval::{self, BATCH};
 use zeroset_field::number::lanes::LaneMask;
 use zeroset_field::number::{Lanes, Ops, Real, Vec3};
+use zeroset_scene::skin;
 use zeroset_scene::view::ROUNDING;
 
 /// Smoothing of the slope along a ray, as in `auto`.
@@ -31,8 +32,10 @@ const STEEPEST: f32 = 0.98;
 pub(crate) const FIRST: f32 = 2.0;
 /// A value of an estimate below this many offsets stops a ray that has no penumbra; any other field must change its sign.
 pub(crate) const STOP: f32 = 0.125;
-/// Steps are at least this many offsets long.
+/// Steps are at least this many offsets long; where there are skins, no longer than what touches one.
 pub(crate) const LEAST: f32 = 1.0 / 32.0;
+/// What counts as light for a ray that has touched something: from there on only what it hits is dark.
+const TOUCHED: f32 = -1.0;
 
 /// What samples say of the light.
 pub(crate) trait Penumbra<S: Simd>: Copy {
@@ -99,7 +102,7 @@ pub(crate) fn stream<S: Simd, P: Penumbra<S>, A: Aim<S>>(
                 }
                 sample(s, aim, solid, q);
                 evaluations += q.beams.count as u64;
-                advance(s, penumbra, aim.common().is_none(), solid.close, q);
+                advance(s, penumbra, aim.common().is_none(), solid, q);
                 iteration += 1;
                 retire(s, penumbra, solid.max_steps, iteration, q);
             }
@@ -179,7 +182,15 @@ fn start<S: Simd, P: Penumbra<S>, A: Aim<S>>(
         &mut beams.light,
         n,
     );
-    begin.put(offset * LEAST, &mut beams.least, n);
+    begin.put(
+        if solid.skins && !P::HARD {
+            skin::touch(offset, point.x.abs() + point.y.abs() + point.z.abs())
+        } else {
+            offset * LEAST
+        },
+        &mut beams.least,
+        n,
+    );
     begin.put(end, &mut beams.end, n);
     begin.put_words(word, &mut beams.word, n);
     beams.count += begin.count;
@@ -209,7 +220,14 @@ fn sample<S: Simd, A: Aim<S>>(s: S, aim: &A, solid: &Solid<'_>, q: &mut Scratch)
 }
 
 #[inline(always)]
-fn advance<S: Simd, P: Penumbra<S>>(s: S, penumbra: P, aimed: bool, close: bool, q: &mut Scratch) {
+fn advance<S: Simd, P: Penumbra<S>>(
+    s: S,
+    penumbra: P,
+    aimed: bool,
+    solid: &Solid<'_>,
+    q: &mut Scratch,
+) {
+    let (close, skins) = (solid.close, solid.skins && !P::HARD);
     let (beams, ended) = (&mut *q.beams, &mut q.ended);
     // how far rays may go, and what is shown as the distance
     let (free, shown) = if close {
@@ -240,7 +258,7 @@ fn advance<S: Simd, P: Penumbra<S>>(s: S, penumbra: P, aimed: bool, close: bool,
         let wide = if P::HARD || !close {
             splat(s, 0.0)
         } else {
-            light * width
+            light.max(0.0) * width
         };
         // whether anything between the samples can matter
         let gap = z.above(r) & ((r + f - z) * 0.5).below(wide * to) & z.above(least);
@@ -250,22 +268,43 @@ fn advance<S: Simd, P: Penumbra<S>>(s: S, penumbra: P, aimed: bool, close: bool,
         let back = if close { z } else { splat(s, 0.0) };
         let darker = penumbra.darken(light, distance, to, back, r);
         let darker = Lanes::select(gap, light, darker);
-        let dark = !gap & penumbra.dark(darker, f);
+        // a ray without light may have come to a skin: it goes on until it touches something or moves away, and where it
+        // touched, until it is behind a surface
+        let black = penumbra.dark(darker, f);
+        let (darker, dark) = if skins {
+            let behind = f.below(least * skin::BEHIND);
+            let touches = black & f.below(least) & !behind;
+            let leaves = !light.below(0.0) & !touches & z.above(0.0) & f.above(r);
+            let darker = Lanes::select(!gap & touches, splat(s, TOUCHED), darker);
+            (darker, !gap & black & (behind | leaves))
+        } else {
+            (darker, !gap & black)
+        };
         let (t, r) = (Lanes::select(gap, t, to), Lanes::select(gap, r, f));
         let wide = if P::HARD || !close {
             wide
         } else {
-            darker * width
+            darker.max(0.0) * width
         };
         let reach = (r - wide * t) * (2.0 * SHARE) * (slope.one_minus() + wide * 2.0).rough_recip();
         // after a gap the step must be the radius itself: no other is sure to be kept
-        let z = Lanes::select(gap, r, reach.max(r)).max(least);
+        // and so where a skin may be touched
+        let near = if skins {
+            gap | (black & !darker.below(0.0))
+        } else {
+            gap
+        };
+        let z = Lanes::select(near, r, reach.max(r)).max(least);
         // not "above the end": a ray whose numbers are none must end too
         let within = (t + r.max(0.0)).below(end);
         let on = Chosen::new(live & !dark & within);
         if on.count < S::f32s::LEN {
             let done = Chosen::new(live & (dark | !within));
-            let left = if P::HARD { splat(s, 1.0) } else { darker };
+            let left = if P::HARD {
+                splat(s, 1.0)
+            } else {
+                Lanes::select(darker.below(0.0), splat(s, 1.0), darker)
+            };
             done.put(
                 Lanes::select(dark, penumbra.stopped(t), left),
                 &mut ended.light,
@@ -312,7 +351,12 @@ fn retire<S: Simd, P: Penumbra<S>>(
         .take_while(|w| old(w))
         .count();
     for i in 0..spent {
-        ended.light[ended.count] = if P::HARD { 1.0 } else { beams.light[i] };
+        let touched = beams.light[i] < 0.0;
+        ended.light[ended.count] = if P::HARD || touched {
+            1.0
+        } else {
+            beams.light[i]
+        };
         ended.word[ended.count] = beams.word[i];
         ended.count += 1;
     }

@@ -93,6 +93,7 @@ impl<'a> Job<'a> {
             self.picture.region,
             &self.view,
             self.picture.scene.settings.max_steps,
+            self.picture.skins,
             self.samples(),
             stop,
         );
@@ -558,6 +559,10 @@ impl Hits {
     }
 }
 
+/// How far behind a hit its object is looked for, in parts of what rounding adds: a skin is as near as the solid that lies
+/// there, until it is passed.
+pub(crate) const MARKS_BEHIND: f32 = 4.0;
+
 /// Finds which objects and materials the hits belong to.
 fn marks<S: Simd>(s: S, solid: &Solid<'_>, q: &mut Scratch) {
     for k in (0..q.hits.count).step_by(BATCH) {
@@ -565,8 +570,13 @@ fn marks<S: Simd>(s: S, solid: &Solid<'_>, q: &mut Scratch) {
         if solid.stop.before(n) {
             break;
         }
-        for (column, x) in q.work.points_mut().iter_mut().zip(&q.hits.point) {
-            column.0[..n].copy_from_slice(&x[k..k + n]);
+        let hits = &q.hits;
+        let places = hits.point.iter().zip(&hits.normal);
+        for (column, (x, normal)) in q.work.points_mut().iter_mut().zip(places) {
+            for i in 0..n {
+                let behind = MARKS_BEHIND * solid.view.rounding.at(hits.t[k + i]);
+                column.0[i] = x[k + i] - normal[k + i] * behind;
+            }
         }
         eval::marks(s, solid.program, &mut q.work, n);
         q.counts.material += n as u64;

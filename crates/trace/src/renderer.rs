@@ -20,6 +20,7 @@ use zeroset_scene::material::Pattern;
 use zeroset_scene::render::{Evaluations, Frame, Observer, RenderError, Renderer, Statistics};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Occlusion};
+use zeroset_scene::skin::has_skins;
 use zeroset_scene::view::Region;
 
 /// The CPU's renderer: sphere tracing in SIMD streams, over all threads that it is given.
@@ -183,6 +184,8 @@ pub struct Picture<'a> {
     pub(crate) program: Program,
     /// Where the solid is; empty where the scene has no objects.
     pub(crate) region: Region,
+    /// Whether there are skins that its methods would see.
+    pub(crate) skins: bool,
     /// The only material there is, if there is only one.
     pub(crate) material: Option<u16>,
     /// The only object there is, if there is only one.
@@ -243,6 +246,7 @@ impl<'a> Picture<'a> {
         let spare = Mutex::new(Vec::new());
         Ok(Picture {
             scene,
+            skins: has_skins(scene, &program),
             program,
             region,
             material: only(&materials),

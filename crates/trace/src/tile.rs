@@ -57,6 +57,8 @@ pub(crate) struct Solid<'a> {
     pub(crate) fractal: bool,
     /// Whether the field's value can be shown as a distance.
     pub(crate) close: bool,
+    /// Whether it is zero at places without thickness, which no secondary ray may take for surfaces.
+    pub(crate) skins: bool,
     /// Rays a pixel: each stands for less of it.
     pub(crate) samples: u32,
     /// Whether to stop.
@@ -70,6 +72,7 @@ impl<'a> Solid<'a> {
         region: Region,
         view: &'a View,
         max_steps: u32,
+        skins: bool,
         samples: u32,
         stop: &'a Stop<'a>,
     ) -> Solid<'a> {
@@ -80,6 +83,7 @@ impl<'a> Solid<'a> {
             max_steps: program.patient(max_steps).min(ITERATIONS),
             fractal: program.is_fractal(),
             close: program.is_close(),
+            skins,
             samples,
             stop,
         }

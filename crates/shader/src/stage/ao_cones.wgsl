@@ -92,6 +92,9 @@ fn touching_ball(at: Surface, origin: vec3f, far: f32) -> f32 {
     return large;
 }
 
+/// Steps that a cone may take beyond its own to find out what it touched.
+const CONE_MORE: u32 = 64u;
+
 /// Sine of the largest clear angle around a ray from `start` to `end`, at most `CONE_FULL`; 0 if something is hit.
 fn cone_clearance(at: Surface, ray: Ray, start: f32, end: f32, cosine: f32, steps: u32) -> f32 {
     var t = start;
@@ -100,36 +103,52 @@ fn cone_clearance(at: Surface, ray: Ray, start: f32, end: f32, cosine: f32, step
     var slope = cosine;
     var least = CONE_FULL;
     var rise = 1.0;
-    for (var k = 0u; k < steps; k++) {
+    let skins = has_skins();
+    let touch = skin_touch(at);
+    // whether something is in the way, and whether the cone has touched it: from there on only what it hits blocks it
+    var black = false;
+    var touched = false;
+    for (var k = 0u; k < steps + select(0u, CONE_MORE, black); k++) {
         let f = around(at, ray.origin + ray.direction * t);
         if (stride > 0.0) {
             rise = clamp((f - before) / max(stride, 1e-20), -1.0, 1.0);
         }
         // where the balls around two samples do not touch there may be something between them: back to where they do
-        if (stride > before && before + f < stride) {
+        if (stride > before && before + f < stride && (!skins || stride > touch)) {
             t += before - stride;
             stride = before;
             slope = -1.0;
             continue;
         }
-        if (!(f > CONE_BLOCKED * t)) {
-            return 0.0;
+        black = black || !(f > CONE_BLOCKED * t);
+        if (black) {
+            // it may be a skin: the cone goes on until it touches something or moves away, and where it touched, until it is
+            // behind a surface
+            let touches = f < touch;
+            let leaves = !touched && !touches && stride > 0.0 && f > before;
+            if (!skins || f < touch * SKIN_BEHIND || leaves) {
+                return 0.0;
+            }
+            touched = touched || touches;
         }
         least = min(least, f / t);
         if (t >= end) {
-            return least;
+            return select(least, CONE_FULL, touched);
         }
         if (stride > 0.0) {
             slope = mix(slope, rise, OPEN_SMOOTHING);
         }
         slope = min(slope, CONE_STEEPEST);
-        let edge = CONE_CARE * least;
-        stride = min(max(f, 2.0 * CONE_SHARE * (f - edge * t) / (1.0 - slope + 2.0 * edge)), end - t);
+        let edge = select(CONE_CARE * max(least, 0.0), 0.0, touched);
+        // where a skin may be touched, no step leads past it
+        let reach = 2.0 * CONE_SHARE * (f - edge * t) / (1.0 - slope + 2.0 * edge);
+        stride = min(max(max(f, select(0.0, touch, black)), select(reach, 0.0, black && !touched)), end - t);
         before = f;
         t += stride;
     }
     // as it went last: then f / t tends to the slope
-    return min(least, max(rise, 0.0));
+    // one that was out of steps while it touched something did not get through
+    return select(select(min(least, max(rise, 0.0)), 0.0, touched), CONE_FULL, touched && before > touch);
 }
 
 fn ao_cones(at: Surface, how: Occluder) -> Openness {

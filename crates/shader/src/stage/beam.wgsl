@@ -9,7 +9,7 @@
 const BEAM_FIRST: f32 = 2.0;
 /// A value of an estimate below this many offsets stops a ray that has no penumbra; any other field must change its sign.
 const BEAM_STOP: f32 = 0.125;
-/// Steps are at least this many offsets long.
+/// Steps are at least this many offsets long; where there are skins, no longer than what touches one.
 const BEAM_LEAST: f32 = 0.03125;
 /// Less light than this counts as dark.
 const BEAM_DARK: f32 = 1.0 / 256.0;
@@ -38,7 +38,11 @@ fn look(at: Surface, to: vec3f, distance: f32, kind: u32, sharpness: f32) -> Bea
     // beside a loose bound penumbrae are seen where samples happen to be
     let close = is_close();
     let careful = select(0.0, width, close);
-    let least = at.offset * BEAM_LEAST;
+    let skins = has_skins() && !hard;
+    let touch = skin_touch(at);
+    let least = select(at.offset * BEAM_LEAST, touch, skins);
+    // whether the ray has touched something: from there on only what it hits is dark
+    var touched = false;
     let stop = select(2.0 * behind_surface(at.point), at.offset * BEAM_STOP, is_fractal());
     let end = min(min(leave(Ray(origin, to), width, at.offset), distance), frame.far);
     var t = min(at.offset * BEAM_FIRST, end);
@@ -52,7 +56,7 @@ fn look(at: Surface, to: vec3f, distance: f32, kind: u32, sharpness: f32) -> Bea
         let found = sensed(origin + to * there);
         let f = found.x;
         steps += 1u;
-        let wide = light * careful;
+        let wide = select(light, 0.0, touched) * careful;
         if (z > r && z > least && 0.5 * (r + f - z) < wide * there) {
             // something between the samples can matter: back to the radius itself, which is sure to be kept
             m = -1.0;
@@ -69,20 +73,29 @@ fn look(at: Surface, to: vec3f, distance: f32, kind: u32, sharpness: f32) -> Bea
             } else {
                 light = min(light, penumbra(found.y, select(0.0, z, close), r, there, kind) * sharpness);
                 if (light < BEAM_DARK) {
-                    return Beam(0.0, there, steps);
+                    // it may have come to a skin: it goes on until it touches something or moves away, and where it touched,
+                    // until it is behind a surface
+                    let touches = f < touch;
+                    let leaves = !touched && !touches && z > 0.0 && f > r;
+                    if (!skins || f < touch * SKIN_BEHIND || leaves) {
+                        return Beam(0.0, there, steps);
+                    }
+                    touched = touched || touches;
                 }
             }
             t = there;
             r = f;
-            let narrow = light * careful;
-            z = max(max(r, least), (r - narrow * t) * 2.0 * BEAM_SHARE / (1.0 - m + 2.0 * narrow));
+            let narrow = select(light, 0.0, touched) * careful;
+            // where a skin may be touched, no step leads past it
+            let reach = (r - narrow * t) * 2.0 * BEAM_SHARE / (1.0 - m + 2.0 * narrow);
+            z = max(max(r, least), select(reach, 0.0, light < BEAM_DARK && !touched));
         }
         if (!(t + max(r, 0.0) < end)) {
             break;
         }
         z = min(z, end - t);
     }
-    return Beam(light, t, steps);
+    return Beam(select(light, 1.0, touched), t, steps);
 }
 
 /// How wide the way of a ray is for its length, after a sample `f` at `t`, a step of `z` behind one of radius `r`.

@@ -100,6 +100,19 @@ fn is_fractal() -> bool {
     return (frame.quality & 1u) != 0u;
 }
 
+/// Whether the field is zero at places without thickness, which no secondary ray may take for surfaces.
+fn has_skins() -> bool {
+    return (frame.quality & 4u) != 0u;
+}
+
+/// A value below this touches something.
+fn skin_touch(at: Surface) -> f32 {
+    return max(at.offset / 1024.0, (abs(at.point.x) + abs(at.point.y) + abs(at.point.z)) * 4.0 * ROUNDING);
+}
+
+/// Below this share of that it is behind the surface of a solid.
+const SKIN_BEHIND: f32 = -0.25;
+
 /// Whether the field's value can be shown as a distance.
 fn is_close() -> bool {
     return (frame.quality & 2u) != 0u;

@@ -18,6 +18,10 @@ fn blend(a: Substance, b: Substance, share: f32) -> Substance {
     );
 }
 
+/// How far behind a hit its object is looked for, in parts of what rounding adds: a skin is as near as the solid that lies
+/// there, until it is passed.
+const MARKS_BEHIND: f32 = 4.0;
+
 /// What a ray found that hit nothing.
 fn background(ray: Ray, steps: u32) -> Sample {
     let colour = sky_colour(ray.direction.y);
@@ -67,7 +71,7 @@ fn trace_ray(pixel: vec2u, index: u32, ray: Ray, span: vec3f) -> Sample {
         }
     }
     let at = Surface(point, normal, found.side, 2.0 * max(abs(found.f), footprint(ray, t)), ray.direction);
-    let marks = field_marks(point);
+    let marks = field_marks(point - normal * (MARKS_BEHIND * (frame.rounding.x * t + frame.rounding.y)));
     counted[COUNT_MATERIAL] += 1u;
     let key = scramble(pixel, frame.seed ^ ((index + 1u) * 0x9e3779b9u));
     let object = select(frame.objects, u32(max(marks.object, 0.0)), marks.object >= 0.0 && marks.object < f32(frame.objects));

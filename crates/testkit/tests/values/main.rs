@@ -52,7 +52,7 @@ fn on(renderer: &dyn Renderer, scene: &Scene) -> Film {
 fn on_plain(renderer: &CpuRenderer, scene: &Scene) -> Film {
     let picture = renderer.prepare(scene).expect("a program");
     let program = picture.program();
-    let quality = Quality::of(program, scene.settings.max_steps);
+    let quality = Quality::of(program, scene);
     plain::render(scene, &quality, || Compiled::new(program, None))
 }
 

@@ -23,6 +23,7 @@ use std::ops::Range;
 use zeroset_field::eval::BATCH;
 use zeroset_field::number::lanes::LaneMask;
 use zeroset_field::number::{Lanes, Ops, Real, Vec3, v3};
+use zeroset_scene::skin;
 
 /// Number of cones.
 pub(crate) const DIRECTIONS: usize = 11;
@@ -63,6 +64,9 @@ pub(crate) const GROWTH: f32 = 8.0;
 pub(crate) const NARROW: f32 = 2.0;
 /// A ball that has all but this share of its radius is empty: single precision has no more.
 pub(crate) const EMPTY: f32 = 0.999_998;
+
+/// What counts as the clearance of a cone that has touched something: from there on only what it hits blocks it.
+const TOUCHED: f32 = -1.0;
 
 /// Smoothing of the slope along a cone, share of the step that would just do, and steepest slope, as in [`crate::beam`].
 pub(crate) const BETA: f32 = 0.3;
@@ -150,7 +154,7 @@ pub(super) fn cones<S: Simd>(
                     s,
                     solid,
                     &cone,
-                    steps.clamp(1, ITERATIONS),
+                    steps.clamp(1, ITERATIONS - skin::MORE),
                     range.clone(),
                     q,
                 );
@@ -295,7 +299,7 @@ fn march<S: Simd>(
             break;
         }
         look(s, solid, q);
-        advance(s, steps, iteration, q);
+        advance(s, solid.skins, steps, iteration, q);
         iteration = iteration.wrapping_add(1);
     }
 }
@@ -333,6 +337,10 @@ fn start<S: Simd>(
     new.put(splat(s, cone.cosine), &mut beams.m, n);
     new.put(splat(s, FULL), &mut beams.light, n);
     new.put(end, &mut beams.end, n);
+    if solid.skins {
+        let size = origin.x.abs() + origin.y.abs() + origin.z.abs();
+        new.put(skin::touch(offset, size), &mut beams.least, n);
+    }
     new.put_words(
         word | (iteration & ITERATIONS) << ORDINAL_BITS,
         &mut beams.word,
@@ -343,7 +351,7 @@ fn start<S: Simd>(
 
 /// Takes the samples in, and ends the cones that hit something, have left the scene or have had all their steps.
 #[inline(always)]
-fn advance<S: Simd>(s: S, steps: u32, iteration: u32, q: &mut Scratch) {
+fn advance<S: Simd>(s: S, skins: bool, steps: u32, iteration: u32, q: &mut Scratch) {
     let (beams, ended, values) = (&mut *q.beams, &mut q.ended, q.work.values());
     let count = beams.count;
     let mut kept = 0;
@@ -358,17 +366,34 @@ fn advance<S: Simd>(s: S, steps: u32, iteration: u32, q: &mut Scratch) {
         let (m, end) = (load(s, &beams.m, i), load(s, &beams.end, i));
         // where the balls around two samples do not touch there may be something between them: back to where they do
         let gap = z.above(r) & (r + f).below(z);
-        let clear = gap | f.above(t * BLOCKED);
-        let least = load(s, &beams.light, i);
-        let least = Lanes::select(gap, least, least.min(f / t));
+        // steps that find out whether something is touched are kept
+        let touch = load(s, &beams.least, i);
+        let gap = if skins { gap & z.above(touch) } else { gap };
+        let open = f.above(t * BLOCKED);
+        let before = load(s, &beams.light, i);
+        let least = Lanes::select(gap, before, before.min(f / t));
+        // what blocks a cone may be a skin: it goes on until it touches something or moves away, and where it touched, until
+        // it is behind a surface
+        let (black, least, clear) = if skins {
+            let black = !gap & !least.above(BLOCKED);
+            let behind = f.below(touch * skin::BEHIND);
+            let touches = black & f.below(touch) & !behind;
+            let leaves = !before.below(0.0) & !touches & z.above(0.0) & f.above(r);
+            let least = Lanes::select(touches, splat(s, TOUCHED), least);
+            (black, least, !(black & (behind | leaves)))
+        } else {
+            (!gap & !open, least, gap | open)
+        };
         let rise = ((f - r) * z.max(1e-20).rough_recip()).clamp(-1.0, 1.0);
         let slope = Lanes::select(z.above(0.0), m.mix(rise, BETA), m).min(STEEPEST);
         let slope = Lanes::select(gap, splat(s, -1.0), slope);
-        let edge = least * CARE;
+        let edge = least.max(0.0) * CARE;
         let to_edge =
             (f - edge * t) * (2.0 * SHARE) * (slope.one_minus() + edge * 2.0).rough_recip();
         let old: S::u32s = (S::u32s::splat(s, iteration) - (word >> ORDINAL_BITS)) & ITERATIONS;
         let fresh = LaneMask(old.simd_lt(S::u32s::splat(s, steps - 1)));
+        let late = LaneMask(old.simd_lt(S::u32s::splat(s, steps + skin::MORE - 1)));
+        let fresh = fresh | ((black | !before.above(BLOCKED)) & late);
         let live = first_lanes(s, count - i);
         let more = clear & (gap | t.below(end)) & fresh;
         let on = Chosen::new(live & more);
@@ -377,6 +402,9 @@ fn advance<S: Simd>(s: S, steps: u32, iteration: u32, q: &mut Scratch) {
             // a cone that had all its steps goes on as it went last: then f / t tends to the slope
             let at_end = !gap & !t.below(end);
             let found = Lanes::select(at_end, least, least.min(rise.max(0.0)));
+            // one that was out of steps while it touched something did not get through
+            let through = least.below(0.0) & (at_end | f.above(touch));
+            let found = Lanes::select(through, splat(s, FULL), found.max(0.0));
             let found = Lanes::select(clear, found, splat(s, 0.0));
             done.put(found, &mut ended.light, ended.count);
             done.put_words(word, &mut ended.word, ended.count);
@@ -389,9 +417,19 @@ fn advance<S: Simd>(s: S, steps: u32, iteration: u32, q: &mut Scratch) {
             on.put3(load3(s, &beams.origin, i), &mut beams.origin, kept);
             on.put3(load3(s, &beams.direction, i), &mut beams.direction, kept);
             on.put(end, &mut beams.end, kept);
+            if skins {
+                on.put(touch, &mut beams.least, kept);
+            }
             on.put_words(word, &mut beams.word, kept);
         }
-        let step = to_edge.max(f).min(end - t);
+        let step = to_edge.max(f);
+        let step = if skins {
+            let step = Lanes::select(black & !least.below(0.0), f, step);
+            Lanes::select(black, step.max(touch), step)
+        } else {
+            step
+        };
+        let step = step.min(end - t);
         on.put(Lanes::select(gap, t - z + r, t + step), &mut beams.t, kept);
         on.put(Lanes::select(gap, r, step), &mut beams.z, kept);
         on.put(Lanes::select(gap, r, f), &mut beams.r, kept);

@@ -1,6 +1,6 @@
 //! Ambient occlusion.
 
-use super::light::Surface;
+use super::light::{Surface, passes};
 use super::{Plain, Probe, field, glam};
 use crate::ao::cones::{
     BETA, BLOCKED, CARE, CLOSENESS, COSINES, DIRECTIONS, EMPTY, EXTENT, FREE, FULL, GROWTH, NARROW,
@@ -118,7 +118,8 @@ impl Plain<'_> {
                 .min(far)
                 .max(t);
             let mut along = |t: f32| f(origin + to[k] * t);
-            let sine = clearance(&mut along, t, end, cosine, steps);
+            let touch = self.quality.skins.then(|| self.touch(at));
+            let sine = clearance(&mut along, t, end, cosine, steps, touch);
             EXTENT * ((sine - BLOCKED) / (FULL - BLOCKED)).clamp(0.0, 1.0)
         });
         let (distances, weights) = (distances(), weights());
@@ -163,13 +164,15 @@ fn touching(f: &mut impl FnMut(Vec3) -> f32, origin: Vec3, at: &Surface, far: f3
     large
 }
 
-/// Sine of the largest clear angle around a ray from `start` to `end`, at most `FULL`; 0 if something is hit.
+/// Sine of the largest clear angle around a ray from `start` to `end`, at most `FULL`; 0 if something is hit. `touch`: see
+/// [`skin::touch`], where there are skins.
 fn clearance(
     f: &mut impl FnMut(f32) -> f32,
     start: f32,
     end: f32,
     mut slope: f32,
     steps: u32,
+    touch: Option<f32>,
 ) -> f32 {
     let (mut t, mut least) = (start, FULL);
     let mut last: Option<(f32, f32)> = None;
@@ -187,7 +190,8 @@ fn clearance(
             }
         }
         if value <= BLOCKED * t {
-            return 0.0;
+            let open = touch.is_some_and(|touch| passes(f, t, end, touch));
+            return if open { FULL } else { 0.0 };
         }
         least = least.min(value / t);
         if t >= end {

@@ -6,6 +6,7 @@ use crate::shade::arrival;
 use crate::shadow::{DARK, closest};
 use glam::Vec3;
 use zeroset_scene::settings::Shadow;
+use zeroset_scene::skin;
 use zeroset_scene::view::ROUNDING;
 
 /// A place on a surface that light falls on.
@@ -65,6 +66,12 @@ impl Plain<'_> {
         sum
     }
 
+    /// See [`skin::touch`].
+    pub(super) fn touch(&self, at: &Surface) -> f32 {
+        let p = at.p.abs();
+        skin::touch(at.offset, p.x + p.y + p.z)
+    }
+
     /// 1 where nothing is in the way, else what `stopped` makes of the distance (Tomczak 2012, algorithm 3.2).
     pub(super) fn hard(
         &self,
@@ -115,6 +122,11 @@ impl Plain<'_> {
             .min(self.view.far);
         let (mut t, mut light) = (at.offset * FIRST, 1.0f32);
         let mut last: Option<f32> = None;
+        let least = if self.quality.skins {
+            self.touch(at)
+        } else {
+            at.offset * LEAST
+        };
         for _ in 0..self.quality.max_steps {
             if t >= end {
                 break;
@@ -126,11 +138,32 @@ impl Plain<'_> {
             };
             light = light.min(sharpness * d / (t - y).max(1e-20));
             if light < DARK {
-                return 0.0;
+                let mut along = |t: f32| probe.value(origin + to * t);
+                let passes = self.quality.skins && passes(&mut along, t, end, self.touch(at));
+                return f32::from(passes);
             }
             last = Some(f);
-            t += f.max(at.offset * LEAST);
+            t += f.max(least);
         }
         light
     }
+}
+
+/// Whether a ray that came near something at `t` touches it there and gets through all the same, and on to `end`: it was
+/// a skin.
+pub(super) fn passes(f: &mut impl FnMut(f32) -> f32, mut t: f32, end: f32, touch: f32) -> bool {
+    let (mut last, mut touched) = (f32::INFINITY, false);
+    for _ in 0..10_000 {
+        let value = f(t);
+        if value < touch * skin::BEHIND || (!touched && value >= touch && value > last) {
+            return false;
+        }
+        touched |= value < touch;
+        last = value;
+        t += value.max(touch);
+        if t >= end {
+            break;
+        }
+    }
+    touched
 }

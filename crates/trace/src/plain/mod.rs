@@ -12,6 +12,7 @@ mod probe;
 
 pub use probe::{Compiled, Formula, Mark, Probe};
 
+use crate::job::MARKS_BEHIND;
 use crate::material::{Place, colour as pattern_colour};
 use crate::sampling::{point, radius, scramble, weight};
 use crate::shade::{Substance, colour, sky};
@@ -25,6 +26,7 @@ use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::material::Material;
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Filter, Settings};
+use zeroset_scene::skin::has_skins;
 use zeroset_scene::view::{Region, View};
 
 pub(crate) fn glam(v: zeroset_field::number::Vec3<f32>) -> Vec3 {
@@ -64,18 +66,21 @@ pub struct Quality {
     pub fractal: bool,
     /// Whether values can be shown as distances.
     pub close: bool,
+    /// Whether there are skins that the scene's methods would see.
+    pub skins: bool,
     /// Evaluations that a ray may take.
     pub max_steps: u32,
 }
 
 impl Quality {
-    /// That of a program, in a scene that allows this many steps.
-    pub fn of(program: &Program, max_steps: u32) -> Quality {
+    /// That of a scene's program.
+    pub fn of(program: &Program, scene: &Scene) -> Quality {
         Quality {
             bounds: program.bounds(),
             fractal: program.is_fractal(),
             close: program.is_close(),
-            max_steps: program.patient(max_steps),
+            skins: has_skins(scene, program),
+            max_steps: program.patient(scene.settings.max_steps),
         }
     }
 
@@ -85,6 +90,7 @@ impl Quality {
             bounds,
             fractal: false,
             close: true,
+            skins: false,
             max_steps,
         }
     }
@@ -177,7 +183,7 @@ impl Plain<'_> {
         let p = o + d * t;
         let offset = 2.0 * end.f.abs().max(self.view.near(t, self.narrow(o, d)));
         let normal = self.normal(probe, p, d, t, side);
-        let mark = probe.marks(p);
+        let mark = probe.marks(p - normal * (MARKS_BEHIND * self.view.rounding.at(t)));
         let surface = Surface {
             p,
             normal,

@@ -43,15 +43,11 @@ fn faulty(scene: &Scene, value: f32, gradient: f32) -> Film {
     let renderer = CpuRenderer::new(Some(1)).expect("threads");
     let picture = renderer.prepare(scene).expect("a program");
     let program = picture.program();
-    plain::render(
-        scene,
-        &Quality::of(program, scene.settings.max_steps),
-        || Faulty {
-            right: Compiled::new(program, None),
-            value,
-            gradient,
-        },
-    )
+    plain::render(scene, &Quality::of(program, scene), || Faulty {
+        right: Compiled::new(program, None),
+        value,
+        gradient,
+    })
 }
 
 #[test]

@@ -137,9 +137,7 @@ pub fn reference(scene: &Scene) -> Film {
     let renderer = CpuRenderer::new(Some(1)).expect("threads");
     let picture = renderer.prepare(scene).expect("a program");
     let program = picture.program();
-    plain::render(
-        scene,
-        &Quality::of(program, scene.settings.max_steps),
-        || Compiled::new(program, None),
-    )
+    plain::render(scene, &Quality::of(program, scene), || {
+        Compiled::new(program, None)
+    })
 }

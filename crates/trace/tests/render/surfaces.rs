@@ -509,3 +509,63 @@ fn a_stated_slope_changes_no_light() {
         }
     }
 }
+
+/// A hole is the same whether its cutter ends where it leaves the solid or sticks out. Ending there it leaves skins, which no
+/// shadow and no occlusion may see.
+#[test]
+fn light_falls_through_skins() {
+    for (name, solid, ends, sticks_out) in [
+        (
+            "a tube",
+            "(cylinder(1, 2) - CUTTER).move(y = 1)",
+            "cylinder(0.5, 2)",
+            "cylinder(0.5, 2.6)",
+        ),
+        (
+            "a turned tube",
+            "(cylinder(1, 2) - CUTTER).turn(x = 25, z = 50).move(y = 1.3)",
+            "cylinder(0.5, 2)",
+            "cylinder(0.5, 2.6)",
+        ),
+        (
+            "a window",
+            "(box((3, 2, 0.4)) - CUTTER).turn(y = 20).move(y = 1)",
+            "box((1.6, 1.2, 0.4))",
+            "box((1.6, 1.2, 1))",
+        ),
+    ] {
+        for shadow in ["soft(8)", "soft_closest(8)", "hard()"] {
+            let film = |cutter: &str| {
+                let mut scene = written(
+                    &format!(
+                        "show({})\nshow(plane())\ncamera(eye = (1.5, 4.5, 4), target = (0, 1, 0), fov = 40)\n\
+                         sun(direction = (-0.3, -1, -0.6), shadow = {shadow})",
+                        solid.replace("CUTTER", cutter)
+                    ),
+                    96,
+                );
+                scene.settings.occlusion = Occlusion::Cones {
+                    reach: None,
+                    steps: 14,
+                };
+                stream(&scene)
+            };
+            let (skin, open) = (film(ends), film(sticks_out));
+            for plane in [Plane::Shadow, Plane::Occlusion] {
+                let mut off: Vec<f32> = (0..96 * 96)
+                    .filter(|i| !beside_edge(&open, i % 96, i / 96))
+                    .map(|i| (skin.plane(plane)[i] - open.plane(plane)[i]).abs())
+                    .collect();
+                off.sort_by(f32::total_cmp);
+                let mean = off.iter().sum::<f32>() / off.len() as f32;
+                println!(
+                    "{name}, {shadow}: {plane:?} {mean} {}",
+                    off[off.len() * 99 / 100]
+                );
+                // what a cone sees beside the rim of its hole is not the same
+                let most = if plane == Plane::Shadow { 0.005 } else { 0.02 };
+                assert!(mean < most, "{name}, {shadow}: {plane:?} differs by {mean}");
+            }
+        }
+    }
+}

@@ -82,7 +82,7 @@ pub(crate) fn frame(scene: &Scene, threads: usize) -> Result<Frames, RenderError
             streamed = streamed.min(start.elapsed().as_secs_f64());
         }
         let start = Instant::now();
-        let quality = plain::Quality::of(program, scene.settings.max_steps);
+        let quality = plain::Quality::of(program, scene);
         let made = || plain::Compiled::new(program, None);
         reference = Some(pool.install(|| plain::render(scene, &quality, made)));
         plain_time = plain_time.min(start.elapsed().as_secs_f64());
