@@ -14,6 +14,8 @@ const CONE_FULL: f32 = 0.465;
 const CONE_EXTENT: f32 = 0.43;
 /// Near an edge, up to this share of its width, an open cone counts on its neighbours as a blocked one does.
 const CONE_CLOSENESS: f32 = 0.2;
+/// From this share of wholly open on a clearance says all it can of the directions beside it.
+const CONE_TELLING: f32 = 0.2;
 /// Sine of the clearance that is none.
 const CONE_BLOCKED: f32 = 0.05;
 /// Steps are as short as an edge at this share of the clearance found so far asks for.
@@ -174,8 +176,9 @@ fn ao_cones(at: Surface, how: Occluder) -> Openness {
     for (var k = 0u; k < CONES; k++) {
         var behind = -CONE_WIDTH.x;
         for (var j = 0u; j < CONES; j++) {
-            if (j != k && clear[j] > 0.0) {
-                behind = max(behind, clear[j] - distance(to[j], to[k]));
+            if (j != k) {
+                let says = clamp(clear[j] / (CONE_TELLING * CONE_EXTENT), 0.0, 1.0);
+                behind = max(behind, mix(-CONE_WIDTH.x, clear[j] - distance(to[j], to[k]), says));
             }
         }
         behind = min(behind, 0.0) / CONE_WIDTH.x;

@@ -47,6 +47,9 @@ pub(crate) const EXTENT: f32 = 0.43;
 /// Near an edge, up to this share of its width, an open cone counts on its neighbours as a blocked one does.
 pub(crate) const CLOSENESS: f32 = 0.2;
 
+/// From this share of wholly open on a clearance says all it can of the directions beside it.
+const TELLING: f32 = 0.2;
+
 /// Sine of the clearance that is none.
 pub(crate) const BLOCKED: f32 = 0.05;
 /// Steps are as short as an edge at this share of the clearance found so far asks for.
@@ -121,6 +124,17 @@ pub(crate) fn turn<R: Real<Scalar = f32>>(n: Vec3<R>, w: [f32; 3]) -> Vec3<R> {
 pub(crate) fn seen<R: Real<Scalar = f32>>(depth: R) -> R {
     let x = (depth * 0.5 + 0.5).clamp01();
     x.sq() * (x * -2.0 + 3.0)
+}
+
+/// How far behind the edge a blocked direction is, negative, for what another leaves it that is `clear` and so far `apart`.
+/// One that is hardly clear says as little as one that is blocked: else the picture would jump where it becomes so.
+#[inline(always)]
+pub(crate) fn left<R: Real<Scalar = f32>>(clear: R, apart: f32) -> R {
+    let none = clear.lit(-WIDTH[0]);
+    none.mix(
+        clear - apart,
+        (clear * (1.0 / (TELLING * EXTENT))).clamp01(),
+    )
 }
 
 /// What one cone of a ring adds where it is wholly open, so that all of them make 1.
@@ -457,9 +471,7 @@ fn combine<S: Simd>(s: S, to: &[[f32; 3]; DIRECTIONS], range: Range<usize>, q: &
             let mut behind = splat(s, -WIDTH[0]);
             for (j, (&other, &distance)) in clear.iter().zip(apart).enumerate() {
                 if j != k {
-                    let left = other - distance;
-                    let left = Lanes::select(other.above(0.0), left, splat(s, -WIDTH[0]));
-                    behind = behind.max(left);
+                    behind = behind.max(left(other, distance));
                 }
             }
             let behind = behind.min(0.0) * (1.0 / WIDTH[0]);

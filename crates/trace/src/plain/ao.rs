@@ -4,7 +4,7 @@ use super::light::{Surface, passes};
 use super::{Plain, Probe, field, glam};
 use crate::ao::cones::{
     BETA, BLOCKED, CARE, CLOSENESS, COSINES, DIRECTIONS, EMPTY, EXTENT, FREE, FULL, GROWTH, NARROW,
-    SHARE, START, STEEPEST, SURE, WIDTH, directions, distances, ring, seen, turn, weights,
+    SHARE, START, STEEPEST, SURE, WIDTH, directions, distances, left, ring, seen, turn, weights,
 };
 use crate::ao::{EVANS, UP};
 use crate::sampling::{cosine_direction, point};
@@ -127,8 +127,8 @@ impl Plain<'_> {
         for (k, (&w, apart)) in to.iter().zip(&distances).enumerate() {
             let others = clear.iter().zip(apart).enumerate();
             let behind = others
-                .filter(|(j, (other, _))| *j != k && **other > 0.0)
-                .map(|(_, (other, distance))| other - distance)
+                .filter(|(j, _)| *j != k)
+                .map(|(_, (other, distance))| left(*other, *distance))
                 .fold(-WIDTH[0], f32::max)
                 .min(0.0)
                 / WIDTH[0];
