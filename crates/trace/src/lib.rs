@@ -3,6 +3,7 @@
 mod ao;
 mod beam;
 pub mod bench;
+mod bracket;
 mod cone;
 mod isolate;
 mod job;

@@ -1,7 +1,8 @@
 //! What is known of a hit once its ray has ended: the exact place, the residual, the normal.
 
+use crate::bracket::Bracket;
 use crate::simd::{
-    along, first_lanes, load, load_words, load3, sided, splat, splat3, store, store3,
+    INSIDE, along, first_lanes, load, load_words, load3, sided, splat, splat3, store, store3,
 };
 use crate::tile::{Hits, Scratch, Solid};
 use fearless_simd::{Simd, prelude::*};
@@ -14,9 +15,11 @@ use zeroset_scene::settings::Normals;
 const LEAST_STEP: f32 = 1.0 / 16384.0;
 
 /// Guesses, at most, of where the sign changes. Most places are found by one or two.
-const ROUNDS: u32 = 24;
+pub(crate) const ROUNDS: u32 = 24;
 /// One guess of so many is the middle: far from straight, false position hardly moves.
-const MIDDLE: u32 = 3;
+pub(crate) const MIDDLE: u32 = 3;
+/// Vectors of rays go on together while more than this share of them moves.
+const TOGETHER: f32 = 0.25;
 /// A guess is right where a straight line leads from it to the surface within this share of the footprint's radius.
 const SETTLED: f32 = 1.0 / 256.0;
 
@@ -119,7 +122,11 @@ fn guess<S: Simd>(s: S, hits: &Hits, i: usize, round: u32) -> Lanes<S> {
 fn refine<S: Simd>(s: S, solid: &Solid<'_>, k: usize, n: usize, q: &mut Scratch) {
     // 1 where the last guess was before the surface, -1 where it was behind it
     let mut last = Lane::ZERO;
-    for round in 1..=ROUNDS {
+    let mut moving = [0u32; BATCH];
+    let (mut count, mut rounds) = (n, 0);
+    while count as f32 > TOGETHER * n as f32 && rounds < ROUNDS && !solid.stop.is_set() {
+        rounds += 1;
+        let round = rounds;
         let hits = &q.hits;
         values_at(
             s,
@@ -133,7 +140,7 @@ fn refine<S: Simd>(s: S, solid: &Solid<'_>, k: usize, n: usize, q: &mut Scratch)
             },
         );
         q.counts.march += n as u64;
-        let mut moves = false;
+        count = 0;
         for i in (0..n).step_by(S::f32s::LEN) {
             let wanted = near(s, solid, &q.hits, k + i) * SETTLED;
             let hits = &mut q.hits;
@@ -163,12 +170,15 @@ fn refine<S: Simd>(s: S, solid: &Solid<'_>, k: usize, n: usize, q: &mut Scratch)
             let length = Lanes::select(past, beyond - by, by);
             let fall = Lanes::select(past, value - behind, f - value);
             let settled = (value.abs() * length).below(fall * wanted) | rest.below(wanted);
-            moves |= (open & !settled & first_lanes(s, n - i)).0.to_bitmask() != 0;
-        }
-        if !moves || solid.stop.is_set() {
-            break;
+            let mut moves = (open & !settled & first_lanes(s, n - i)).0.to_bitmask();
+            while moves != 0 {
+                moving[count] = i as u32 + moves.trailing_zeros();
+                count += 1;
+                moves &= moves - 1;
+            }
         }
     }
+    refine_rest(s, solid, k, &mut moving[..count], &last, rounds, q);
     for i in (0..n).step_by(S::f32s::LEN) {
         let (t, beyond) = (load(s, &q.hits.t, k + i), load(s, &q.hits.beyond, k + i));
         let by = zero(s, &q.hits, k + i);
@@ -177,6 +187,64 @@ fn refine<S: Simd>(s: S, solid: &Solid<'_>, k: usize, n: usize, q: &mut Scratch)
             &mut q.hits.t,
             k + i,
         );
+    }
+}
+
+/// Goes on after `rounds` guesses with those hits from `k` on that still move, and no others.
+#[inline(always)]
+fn refine_rest<S: Simd>(
+    s: S,
+    solid: &Solid<'_>,
+    k: usize,
+    moving: &mut [u32],
+    last: &Lane,
+    rounds: u32,
+    q: &mut Scratch,
+) {
+    let mut parts = [Bracket::NONE; BATCH];
+    for (part, &i) in parts.iter_mut().zip(&*moving) {
+        let (at, hits) = (k + i as usize, &q.hits);
+        *part = Bracket {
+            t: hits.t[at],
+            above: hits.f[at],
+            beyond: hits.beyond[at],
+            below: hits.behind[at],
+            last: last.0[i as usize],
+        };
+    }
+    let mut count = moving.len();
+    for round in rounds + 1..=ROUNDS {
+        if count == 0 || solid.stop.before(count) {
+            break;
+        }
+        for (j, (part, &i)) in parts.iter().zip(&*moving).take(count).enumerate() {
+            let ray = q.hits.ray.each_ref().map(|column| column[k + i as usize]);
+            let (o, d) = solid.view.split(v3(ray[0], ray[1], ray[2]));
+            let p = (o + d * (part.t + part.guess(round))).array();
+            for (column, x) in q.work.points_mut().iter_mut().zip(p) {
+                column.0[j] = x;
+            }
+        }
+        eval::values(s, solid.program, &mut q.work, count);
+        q.counts.march += count as u64;
+        let mut kept = 0;
+        for j in 0..count {
+            let (mut part, i) = (parts[j], moving[j]);
+            let (at, hits) = (k + i as usize, &mut q.hits);
+            let inside = hits.word[at] & INSIDE != 0;
+            let value = q.work.values().0[j] * if inside { -1.0 } else { 1.0 };
+            let ray = v3(hits.ray[0][at], hits.ray[1][at], hits.ray[2][at]);
+            let near = solid.view.near(part.t, solid.view.narrow(ray));
+            let wanted = (near * SETTLED).max(part.t * f32::EPSILON);
+            let settled = part.narrow(part.guess(round), value, wanted);
+            (hits.t[at], hits.f[at]) = (part.t, part.above);
+            (hits.beyond[at], hits.behind[at]) = (part.beyond, part.below);
+            if !settled {
+                (parts[kept], moving[kept]) = (part, i);
+                kept += 1;
+            }
+        }
+        count = kept;
     }
 }
 
