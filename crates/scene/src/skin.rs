@@ -13,9 +13,9 @@ use zeroset_field::eval::Point;
 use zeroset_field::number::{Dual, F64, Real, v3};
 use zeroset_field::program::Program;
 
-/// Instructions that the search may take; places that it looks at, at least and at most.
-const WORK: usize = 100_000;
-const LEAST: usize = 256;
+/// Instructions that one step of the search may take, at all places together: a scene may come from a stranger.
+const WORK: usize = 400_000;
+/// Places that it looks at, at most.
 const MOST: usize = 2048;
 /// Steps to the surface.
 const STEPS: usize = 8;
@@ -23,7 +23,7 @@ const STEPS: usize = 8;
 const THIN: f64 = 1e-5;
 
 /// Whether there are skins, and methods that would see them. What is less than a hundredth of an object's surface may be
-/// overlooked.
+/// overlooked, and more than that in a scene of thousands of instructions: the search is as short as it is there.
 pub fn has_skins(scene: &Scene, program: &Program) -> bool {
     if !program.is_close() || program.is_fractal() || !reads_distances(scene) {
         return false;
@@ -36,7 +36,7 @@ pub fn has_skins(scene: &Scene, program: &Program) -> bool {
         return false;
     }
     let instructions = program.structure().values.instructions.len();
-    let count = (WORK / instructions.max(1)).clamp(LEAST, MOST);
+    let count = (WORK / instructions.max(1)).min(MOST);
     let mut field = Point::<Dual<F64>>::new(program);
     (0..count).any(|i| {
         let (object, number) = (&boxes[i % boxes.len()], i / boxes.len());
