@@ -1,16 +1,17 @@
 //! From the tree to the list: lowering, sharing, registers.
 
-use crate::bounds::{Aabb, Exactness};
-use crate::catalogue::entries::catalogue;
-use crate::catalogue::{Dimension, Stretch};
 use crate::field::{Field, Node, Paint};
 use crate::formula::{Binary, Formula, Step};
-use crate::op::{code, recorded};
 use crate::placement::Placement;
-use crate::program::{Code, CompileError, Instruction, Limits, Operation, Program, Structure};
+use crate::program::{CompileError, Limits, Program, Structure};
 use crate::repetition::{Polar, Repetition};
 use std::collections::HashMap;
 use std::sync::Arc;
+use zeroset_catalogue::bounds::{Aabb, Exactness};
+use zeroset_catalogue::entries::catalogue;
+use zeroset_catalogue::op::{code, reads_point};
+use zeroset_catalogue::tape::{Code, Instruction, Operation};
+use zeroset_catalogue::{Dimension, Stretch};
 
 /// Sides of a box that has none, as parameters: squares of it still fit single precision.
 const FAR: f64 = 1e18;
@@ -66,7 +67,7 @@ pub(crate) fn compile(field: &Field, limits: &Limits) -> Result<Program, Compile
     };
     Ok(Program {
         structure: Arc::new(structure),
-        params: l.params.into(),
+        data: Arc::new(l.params.into()),
         bounds: facts.bounds,
         exactness: facts.exactness,
         steep: l.steep,
@@ -120,11 +121,7 @@ impl Lowering<'_> {
         params: &[f64],
     ) -> Result<u32, CompileError> {
         // a point that is not read would keep its register up to here: one a step in a chain of moves and roundings
-        let point = if recorded::reads_point(code) {
-            point
-        } else {
-            INPUT
-        };
+        let point = if reads_point(code) { point } else { INPUT };
         self.emit(Operation::Change(code), value, point, params)
     }
 
@@ -205,7 +202,11 @@ impl Lowering<'_> {
     }
 
     fn mark(&mut self, paint: Paint, value: u32) -> Result<u32, CompileError> {
-        self.emit(Operation::mark(paint), value, INPUT, &[])
+        let mark = match paint {
+            Paint::Material(number) => Operation::Mark(0, number),
+            Paint::Object(number) => Operation::Mark(1, number),
+        };
+        self.emit(mark, value, INPUT, &[])
     }
 
     /// The value of a field, divided by its slope.
@@ -409,7 +410,7 @@ fn inverse(placement: &Placement) -> [f64; 12] {
     m
 }
 
-/// The grid of a repetition as [`RepeatCell`](crate::op::domain::RepeatCell) takes it.
+/// The grid of a repetition as [`RepeatCell`](zeroset_catalogue::op::domain::RepeatCell) takes it.
 fn grid(r: &Repetition) -> Vec<f64> {
     // cells without end: as many as single precision tells apart
     let endless = 4_000_000.0;

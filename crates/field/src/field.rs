@@ -3,14 +3,14 @@
 //! A [`Field`] is cheap to clone, and a clone is the same node: a shape used in two places of a tree at the same place in
 //! space is evaluated once. Every node is checked when it is made, and knows its box, its exactness and its slope.
 
-use crate::bounds::{Aabb, Exactness};
-use crate::catalogue::entries::{JoinEntry, MapEntry, ModifyEntry, PrimitiveEntry};
-use crate::catalogue::{Dimension, Info, Kind, Stretch};
 use crate::formula::Formula;
 use crate::level::join_bounds;
 use crate::placement::Placement;
 use crate::repetition::{Polar, Repetition};
 use std::sync::Arc;
+use zeroset_catalogue::bounds::{Aabb, Exactness};
+use zeroset_catalogue::entries::{JoinEntry, MapEntry, ModifyEntry, PrimitiveEntry};
+use zeroset_catalogue::{Dimension, Info, Kind, Stretch};
 
 /// Deepest tree that can be built; deeper ones are refused before a recursion could overflow the stack.
 pub const MAX_DEPTH: u32 = 512;

@@ -21,10 +21,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::bounds::Aabb;
-use crate::number::{Real, Vec3};
-use crate::op::arithmetic;
 use crate::proof::{self, Tape};
+use zeroset_catalogue::bounds::Aabb;
+use zeroset_catalogue::op::arithmetic;
+use zeroset_number::{Real, Vec3};
 
 mod builder;
 mod function;
@@ -33,101 +33,7 @@ pub(crate) mod print;
 pub use crate::proof::{Budget, Cause, Obstacle, ProofError};
 pub use builder::{BuildError, Builder, Expression, MAX_STEPS};
 pub use function::{Function, functions};
-
-/// A function of one number. Angles are radians.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Unary {
-    /// The negation.
-    Neg,
-    /// The absolute value.
-    Abs,
-    /// The square root; 0 below 0.
-    Sqrt,
-    /// The square.
-    Square,
-    /// The largest whole number that is not above.
-    Floor,
-    /// The sine.
-    Sin,
-    /// The cosine.
-    Cos,
-    /// The tangent.
-    Tan,
-    /// The angle in [-pi/2, pi/2] that has this sine; beyond -1 and 1 that of the nearer end.
-    Asin,
-    /// The angle in [0, pi] that has this cosine; beyond -1 and 1 that of the nearer end.
-    Acos,
-    /// The angle in (-pi/2, pi/2) that has this tangent.
-    Atan,
-    /// e to the power of it.
-    Exp,
-    /// The natural logarithm; at 0 and below, that of the smallest number there is.
-    Ln,
-    /// The hyperbolic tangent.
-    Tanh,
-}
-
-impl Unary {
-    /// All of them.
-    pub const ALL: [Unary; 14] = [
-        Unary::Neg,
-        Unary::Abs,
-        Unary::Sqrt,
-        Unary::Square,
-        Unary::Floor,
-        Unary::Sin,
-        Unary::Cos,
-        Unary::Tan,
-        Unary::Asin,
-        Unary::Acos,
-        Unary::Atan,
-        Unary::Exp,
-        Unary::Ln,
-        Unary::Tanh,
-    ];
-}
-
-/// A function of two numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Binary {
-    /// `x + y`.
-    Add,
-    /// `x - y`.
-    Sub,
-    /// `x y`.
-    Mul,
-    /// `x / y`.
-    Div,
-    /// The smaller.
-    Min,
-    /// The larger.
-    Max,
-    /// `x - y floor(x / y)`.
-    Modulo,
-    /// `x ^ y` for x > 0. A base that can be negative is refused, unless y is a constant whole number: then [`Steps`] holds
-    /// products in place of the power.
-    Pow,
-    /// The angle of the point (y, x), in [-pi, pi]: the first operand is the ordinate.
-    Atan2,
-    /// `sqrt(x^2 + y^2)`: a function of its own because its slope is bounded where the root's is not.
-    Hypot,
-}
-
-impl Binary {
-    /// All of them.
-    pub const ALL: [Binary; 10] = [
-        Binary::Add,
-        Binary::Sub,
-        Binary::Mul,
-        Binary::Div,
-        Binary::Min,
-        Binary::Max,
-        Binary::Modulo,
-        Binary::Pow,
-        Binary::Atan2,
-        Binary::Hypot,
-    ];
-}
+pub use zeroset_catalogue::op::arithmetic::{Binary, Unary};
 
 /// One step of a formula; operands are the numbers of earlier steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -389,7 +295,7 @@ impl Formula {
 fn checked(bounds: Aabb) -> Result<Aabb, ProofError> {
     let single = |x: f64| f64::from(x as f32);
     let bounds = Aabb::new(bounds.min.map(single), bounds.max.map(single));
-    let largest = crate::catalogue::LARGE;
+    let largest = zeroset_catalogue::LARGE;
     let within = |x: &f64| (-largest..=largest).contains(x);
     let sides = bounds.min.iter().chain(&bounds.max);
     if !sides.clone().all(within) || (0..3).any(|k| bounds.min[k] >= bounds.max[k]) {

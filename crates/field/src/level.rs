@@ -4,12 +4,12 @@
 //! distance grows by as much as its value says; a field that is only a bound may grow by more, so its level sets are found
 //! node by node.
 
-use crate::bounds::{Aabb, Exactness};
-use crate::catalogue::Stretch;
-use crate::catalogue::entries::JoinEntry;
 use crate::field::{Field, Node};
 use std::cell::RefCell;
 use std::collections::HashMap;
+use zeroset_catalogue::Stretch;
+use zeroset_catalogue::bounds::{Aabb, Exactness};
+use zeroset_catalogue::entries::JoinEntry;
 
 /// Boxes that were found already, by node and level, so that shared nodes are visited once.
 type Known = RefCell<HashMap<(usize, u64), Aabb>>;

@@ -1,14 +1,9 @@
-//! Signed distance fields: numbers, catalogue, bounds, programs, evaluators.
+//! Signed distance fields as trees: what they know of themselves, how formulas are proven, and what they compile to.
 
-pub mod bounds;
-pub mod catalogue;
 mod compile;
-pub mod eval;
 pub mod field;
 pub mod formula;
 mod level;
-pub mod number;
-pub mod op;
 pub mod placement;
 pub mod program;
 mod proof;

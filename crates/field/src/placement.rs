@@ -1,6 +1,6 @@
 //! Rigid motions with a uniform scale: what `move`, `turn` and `scale` become.
 
-use crate::bounds::Aabb;
+use zeroset_catalogue::bounds::Aabb;
 
 /// `x -> scale * rotation * x + offset`, from the shape's own space to the space it is seen in.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,62 +7,13 @@
 //! The value of a program never overestimates the distance to its surface: it is divided by the Lipschitz constant where
 //! that may be above 1.
 
-use crate::bounds::{Aabb, Exactness};
-use crate::catalogue::entries::catalogue;
 use crate::compile;
-use crate::field::{Field, Paint};
+use crate::field::Field;
 use std::sync::Arc;
-
-/// What an instruction does: the kind of operation and its code in the list of that kind.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Operation {
-    /// A point in, a value out.
-    Leaf(u16),
-    /// A point in, a point out.
-    Warp(u16),
-    /// A value and a point in, a value out.
-    Change(u16),
-    /// Two values in, a value out.
-    Pair(u16),
-    /// A value in, the same value out, marked as [`Paint`]: only in the list for marks.
-    Mark(u8, u16),
-}
-
-impl Operation {
-    pub(crate) fn mark(paint: Paint) -> Self {
-        match paint {
-            Paint::Material(m) => Operation::Mark(0, m),
-            Paint::Object(o) => Operation::Mark(1, o),
-        }
-    }
-}
-
-/// One step of a program. Registers are numbered in numbers: points take three, values one, points come first. No
-/// instruction writes a register that it reads.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Instruction {
-    /// What it does.
-    pub operation: Operation,
-    /// Where the result goes.
-    pub out: u16,
-    /// First operand: a point for a leaf or a warp, otherwise a value.
-    pub a: u16,
-    /// Second operand: the point of a change (register 0 where it is not read), the second value of a pair.
-    pub b: u16,
-    /// Where its parameters begin.
-    pub at: u32,
-}
-
-/// A list of instructions with its registers. Register 0 holds the point to evaluate at.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub struct Code {
-    /// The steps.
-    pub instructions: Vec<Instruction>,
-    /// Numbers that the registers take.
-    pub registers: u16,
-    /// Where the result is.
-    pub result: u16,
-}
+use zeroset_catalogue::bounds::{Aabb, Exactness};
+use zeroset_catalogue::entries::catalogue;
+use zeroset_catalogue::tape::{Code, Operation, Tape};
+use zeroset_number::Data;
 
 /// What a program does, apart from its numbers. Programs of equal structure can share a shader.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -77,12 +28,15 @@ pub struct Structure {
 #[derive(Clone, Debug)]
 pub struct Program {
     pub(crate) structure: Arc<Structure>,
-    pub(crate) params: Arc<[f32]>,
+    pub(crate) data: Arc<Data>,
     pub(crate) bounds: Aabb,
     pub(crate) exactness: Exactness,
     pub(crate) steep: bool,
     pub(crate) slope: f64,
 }
+
+/// Slopes below this are none.
+pub const FLAT: f32 = 1e-12;
 
 /// Programs that divide by more than this hold a field that may be far less than the distance.
 const CLOSE: f64 = 1.25;
@@ -161,7 +115,40 @@ impl Program {
 
     /// Its numbers.
     pub fn params(&self) -> &[f32] {
-        &self.params
+        &self.data.params
+    }
+
+    /// Its numbers and grids.
+    pub fn data(&self) -> &Data {
+        &self.data
+    }
+
+    /// What finds its values.
+    pub fn values(&self) -> Tape<'_> {
+        Tape {
+            code: &self.structure.values,
+            data: &self.data,
+        }
+    }
+
+    /// What finds which object and which materials a point belongs to.
+    pub fn marks(&self) -> Tape<'_> {
+        Tape {
+            code: &self.structure.marks,
+            data: &self.data,
+        }
+    }
+
+    /// What is shown as the distance to the surface where the field has this value and gradient, and its gradient: the value
+    /// where it is close to the distance, else the value over the length of the gradient (Taubin 1994), which does not depend
+    /// on the constant that the value was divided by.
+    pub fn shown_distance(&self, (value, gradient): (f32, [f32; 3])) -> (f32, [f32; 3]) {
+        if self.is_close() {
+            return (value, gradient);
+        }
+        let length = gradient.iter().map(|g| g * g).sum::<f32>().sqrt();
+        let scale = 1.0 / length.max(FLAT);
+        (value * scale, gradient.map(|g| g * scale))
     }
 
     /// A box that holds the solid.

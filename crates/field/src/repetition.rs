@@ -4,7 +4,7 @@
 //! distance is known, so the value is `min(nearest copies, distance to the wall)`: it never overestimates, has slope 1 and
 //! is continuous, because a copy enters the search only where the wall already limits the value.
 
-use crate::bounds::Aabb;
+use zeroset_catalogue::bounds::Aabb;
 
 /// Copies on a grid along any of the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -11,7 +11,7 @@ use skrifa::instance::{LocationRef, Size};
 use skrifa::outline::DrawSettings;
 use skrifa::{FontRef, GlyphId, MetadataProvider};
 
-use crate::catalogue::{LARGE, SMALL};
+use zeroset_catalogue::{LARGE, SMALL};
 
 mod contour;
 mod kerning;

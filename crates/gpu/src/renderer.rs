@@ -25,7 +25,7 @@ use zeroset_shader::{FieldForm, Job, Shaders};
 ///
 /// ```
 /// use zeroset_gpu::{Choice, GpuRenderer};
-/// use zeroset_scene::load::{Language, Options, load_text};
+/// use zeroset_language::load::{Language, Options, load_text};
 /// use zeroset_scene::render::{Renderer, Silent};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 use std::time::{Duration, Instant};
 use zeroset_gpu::{FieldForm, GpuError, testing};
+use zeroset_language::load::{Language, Options, load_text};
 use zeroset_scene::film::Plane;
-use zeroset_scene::load::{Language, Options, load_text};
 use zeroset_scene::render::{Observer, RenderError, Renderer, Silent};
 use zeroset_scene::scene::Scene;
 

@@ -1,12 +1,11 @@
 //! The scene as a whole.
 
 use crate::camera::Camera;
-use crate::draft::finite_bounds;
 use crate::light::{Light, Sky};
 use crate::material::Material;
 use crate::settings::{Occlusion, Settings};
-use zeroset_field::bounds::Aabb;
-use zeroset_field::catalogue::entries::Catalogue;
+use zeroset_catalogue::bounds::Aabb;
+use zeroset_catalogue::entries::Catalogue;
 use zeroset_field::field::{Field, FieldError, Paint};
 
 /// A field with a material.
@@ -67,4 +66,11 @@ impl Scene {
         }
         Field::join(Catalogue::union(), Vec::new(), shapes).map(Some)
     }
+}
+
+/// The box of all that has an end; what goes on for ever is left out. `None` where nothing is left.
+pub fn finite_bounds(bounds: impl Iterator<Item = Aabb>) -> Option<Aabb> {
+    bounds
+        .filter(|b| !b.is_empty() && b.is_finite())
+        .reduce(|a, b| a.hull(&b))
 }

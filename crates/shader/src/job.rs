@@ -5,8 +5,8 @@ use crate::layout::{Frame, Light, Material, Occluder, rows};
 use crate::source::Key;
 use std::collections::HashMap;
 use std::sync::Arc;
-use zeroset_field::bounds::Aabb;
-use zeroset_field::catalogue::entries::catalogue;
+use zeroset_catalogue::bounds::Aabb;
+use zeroset_catalogue::entries::catalogue;
 use zeroset_field::field::Field;
 use zeroset_field::program::{Limits, Program};
 use zeroset_scene::film::Plane;
@@ -15,8 +15,8 @@ use zeroset_scene::material::{self, Pattern};
 use zeroset_scene::render::RenderError;
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Filter, March, Occlusion, Shadow};
-use zeroset_scene::skin::has_skins;
-use zeroset_scene::view::{Region, View};
+use zeroset_shade::skin::has_skins;
+use zeroset_shade::view::{Region, View};
 
 /// How the field gets into the shader.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

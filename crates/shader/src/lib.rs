@@ -10,5 +10,5 @@ pub mod job;
 pub mod layout;
 mod source;
 
-pub use field::FieldSource;
+pub use field::{FieldSource, recorded};
 pub use job::{FieldForm, Job, Shaders, Turns};

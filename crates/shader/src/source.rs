@@ -9,10 +9,10 @@ use crate::layout::{
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::sync::{Arc, LazyLock};
-use zeroset_field::catalogue::noise::gradient_noise;
-use zeroset_field::number::record::{Argument, Recorder};
-use zeroset_field::number::wgsl;
+use zeroset_catalogue::noise::gradient_noise;
 use zeroset_field::program::{Program, Structure};
+use zeroset_number::record::{Argument, Recorder};
+use zeroset_number::wgsl;
 use zeroset_scene::material::Pattern;
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{March, Normals, Occlusion, Shading, Shadow};

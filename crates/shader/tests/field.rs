@@ -3,19 +3,16 @@
 #![allow(unreachable_pub, reason = "nothing outside a test can use it")]
 
 use fearless_simd::{Level, dispatch};
-use shader::{Shader, Value};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
-use zeroset_field::eval::{self, BATCH, Workspace};
-use zeroset_field::number::{Dual, v3};
-use zeroset_field::op::recorded::{self, Form};
-use zeroset_field::program::{Code, Instruction, Limits, Operation, Program, Structure};
-use zeroset_scene::load::{Options, load};
+use zeroset_catalogue::tape::{Code, Instruction, Operation};
+use zeroset_eval::{BATCH, Workspace};
+use zeroset_field::program::{Limits, Program, Structure};
+use zeroset_language::load::{Options, load};
+use zeroset_number::{Dual, v3};
 use zeroset_shader::FieldSource;
-
-#[allow(dead_code, reason = "the tests of numbers use more of it")]
-#[path = "../../field/tests/number/shader.rs"]
-mod shader;
+use zeroset_shader::recorded::{self, Form};
+use zeroset_testkit::wgsl::{Shader, Value};
 
 const HEAD: &str = "@group(0) @binding(2) var<storage, read> params: array<f32>;
 @group(0) @binding(3) var<storage, read> code: array<u32>;
@@ -77,19 +74,19 @@ fn points(program: &Program, n: usize) -> Vec<[f32; 3]> {
 /// Value, gradient and marks, by the evaluators.
 fn evaluate(program: &Program, points: &[[f32; 3]]) -> Vec<[Vec<f32>; 3]> {
     assert!(points.len() <= BATCH);
-    let mut w = Workspace::new(program);
+    let mut w = Workspace::new(program.values(), program.marks());
     for (k, lane) in w.points_mut().iter_mut().enumerate() {
         for (x, p) in lane.0.iter_mut().zip(points) {
             *x = p[k];
         }
     }
-    dispatch!(Level::new(), s => eval::marks(s, program, &mut w, points.len()));
+    dispatch!(Level::new(), s => zeroset_eval::marks(s, program.marks(), &mut w, points.len()));
     let m = w.marks();
     (points.iter().enumerate())
         .map(|(i, p)| {
-            let value = eval::Point::new(program).value(v3(p[0], p[1], p[2]));
+            let value = zeroset_eval::Point::new(program.values()).value(v3(p[0], p[1], p[2]));
             let dual = Dual::point(v3(p[0], p[1], p[2]));
-            let d: Dual<f32> = eval::Point::new(program).value(dual);
+            let d: Dual<f32> = zeroset_eval::Point::new(program.values()).value(dual);
             let marks = [&m.object, &m.first, &m.second, &m.share];
             let marks = marks.into_iter().chain(&m.orbit).map(|lane| lane.0[i]);
             [

@@ -5,7 +5,7 @@ use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use zeroset_scene::load::{Language, Options, load, load_text};
+use zeroset_language::load::{Language, Options, load, load_text};
 use zeroset_scene::material::{Image, Pattern};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Filter, March, Normals, Occlusion, Shading, Shadow};

@@ -5,3 +5,4 @@
 
 pub mod conform;
 pub mod scenes;
+pub mod wgsl;

@@ -5,8 +5,8 @@
 
 use std::path::Path;
 use zeroset::gpu::{GpuRenderer, testing};
+use zeroset::language::load::{Language, Options, load, load_text};
 use zeroset::scene::film::{Film, Plane};
-use zeroset::scene::load::{Language, Options, load, load_text};
 use zeroset::scene::render::{Renderer, Silent};
 use zeroset::scene::scene::Scene;
 use zeroset::scene::settings::{

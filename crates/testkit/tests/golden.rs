@@ -4,13 +4,13 @@
 //! `ZEROSET_BLESS=1 cargo test -p zeroset-testkit --test golden`. Look at it first.
 
 use std::path::{Path, PathBuf};
+use zeroset::language::load::{Options, load};
 use zeroset::output::compare::compare;
 use zeroset::output::format::Notes;
 use zeroset::output::format::png::Depth;
 use zeroset::output::format::read::read;
 use zeroset::output::picture::Picture;
 use zeroset::scene::film::{Film, Plane};
-use zeroset::scene::load::{Options, load};
 use zeroset::scene::render::{Renderer, Silent};
 use zeroset::scene::settings::Antialias;
 use zeroset::trace::CpuRenderer;

@@ -1,12 +1,12 @@
 //! No phantom surfaces: behind every hit of every scene, seen from its own camera, from the front, the side and above, the field
 //! is negative, in double precision.
 
-use zeroset::field::eval::Point;
-use zeroset::field::number::{F64, v3};
+use zeroset::eval::Point;
 use zeroset::field::program::Program;
+use zeroset::language::load::{Options, load};
+use zeroset::number::{F64, v3};
 use zeroset::scene::camera::{Camera, Lens};
 use zeroset::scene::film::{Film, Plane};
-use zeroset::scene::load::{Options, load};
 use zeroset::scene::render::{Renderer, Silent};
 use zeroset::scene::scene::Scene;
 use zeroset::scene::settings::{Antialias, Occlusion};
@@ -41,7 +41,7 @@ fn views(scene: &Scene) -> Vec<Camera> {
 
 /// Hits without a solid behind them.
 fn phantoms(scene: &Scene, film: &Film, program: &Program) -> usize {
-    let mut point = Point::<F64>::new(program);
+    let mut point = Point::<F64>::new(program.values());
     let mut f = |p: glam::DVec3| point.value(v3(F64(p.x), F64(p.y), F64(p.z))).0;
     let [width, height] = scene.settings.size;
     let (slope, constant) = scene.camera.pixel_width(height);

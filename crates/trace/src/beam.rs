@@ -16,11 +16,11 @@ use crate::simd::{
 use crate::tile::{Beams, Scratch, Solid};
 use fearless_simd::{Simd, prelude::*};
 use std::ops::Range;
-use zeroset_field::eval::{self, BATCH};
-use zeroset_field::number::lanes::LaneMask;
-use zeroset_field::number::{Lanes, Ops, Real, Vec3};
-use zeroset_scene::skin;
-use zeroset_scene::view::ROUNDING;
+use zeroset_eval::BATCH;
+use zeroset_number::lanes::LaneMask;
+use zeroset_number::{Lanes, Ops, Real, Vec3};
+use zeroset_shade::skin;
+use zeroset_shade::view::ROUNDING;
 
 /// Smoothing of the slope along a ray, as in `auto`.
 const BETA: f32 = 0.3;
@@ -213,7 +213,7 @@ fn sample<S: Simd, A: Aim<S>>(s: S, aim: &A, solid: &Solid<'_>, q: &mut Scratch)
         store3(at, points, i);
     }
     if solid.close {
-        eval::values(s, solid.program, &mut q.work, beams.count);
+        zeroset_eval::values(s, solid.program.values(), &mut q.work, beams.count);
     } else {
         distances(s, solid, beams.count, &mut q.work);
     }

@@ -1,7 +1,7 @@
 //! Scenes and measurements.
 
 use glam::Vec3;
-use zeroset_field::catalogue::entries::catalogue;
+use zeroset_catalogue::entries::catalogue;
 use zeroset_field::field::Field;
 use zeroset_field::placement::Placement;
 use zeroset_field::repetition::Repetition;

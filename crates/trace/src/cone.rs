@@ -10,10 +10,10 @@ use crate::order;
 use crate::simd::{Chosen, INSIDE, load, splat, store};
 use crate::tile::{Area, HEIGHT, Rays, Scratch, Solid, Spans, WIDTH};
 use fearless_simd::{Simd, prelude::*};
-use zeroset_field::number::lanes::LaneMask;
-use zeroset_field::number::{Lanes, Ops, Real, Vec3};
+use zeroset_number::lanes::LaneMask;
+use zeroset_number::{Lanes, Ops, Real, Vec3};
 use zeroset_scene::settings::March;
-use zeroset_scene::view::Linear;
+use zeroset_shade::view::Linear;
 
 /// Sides of the cells that are marched as one cone, in pixels. They nest, each with the next one's sides times 2 or 4.
 const SIDES: [usize; 4] = [32, 8, 4, 2];

@@ -5,10 +5,10 @@
 //! near ones first (Mitchell 1990). The values at its ends help: with the slope of a field that is a bound, or with the range
 //! of its derivative along the ray, which needs fewer and fewer parts the shorter they are.
 
-use zeroset_field::bounds::Exactness;
-use zeroset_field::eval::Point;
-use zeroset_field::number::{Dual, F64, Interval, Vec3, v3};
+use zeroset_catalogue::bounds::Exactness;
+use zeroset_eval::Point;
 use zeroset_field::program::Program;
+use zeroset_number::{Dual, F64, Interval, Vec3, v3};
 
 /// A ray.
 #[derive(Clone, Copy, Debug)]
@@ -83,10 +83,10 @@ impl<'p> Isolation<'p> {
     pub(crate) fn new(program: &'p Program) -> Self {
         Isolation {
             program,
-            ranges: Point::new(program),
-            slopes: Point::new(program),
-            values: Point::new(program),
-            gradients: Point::new(program),
+            ranges: Point::new(program.values()),
+            slopes: Point::new(program.values()),
+            values: Point::new(program.values()),
+            gradients: Point::new(program.values()),
             bound: program.exactness() <= Exactness::Bound,
             chaotic: program.is_fractal(),
             parts: Vec::new(),

@@ -14,12 +14,12 @@ use crate::stop::Stop;
 use crate::tile::{Area, HEIGHT, Hits, Scratch, Solid, WIDTH};
 use crate::{ao, cone, resolve};
 use fearless_simd::{Simd, prelude::*};
-use zeroset_field::eval::{self, BATCH};
-use zeroset_field::number::{Lanes, Ops, Real};
+use zeroset_eval::BATCH;
+use zeroset_number::{Lanes, Ops, Real};
 use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::material::Material;
 use zeroset_scene::settings::{Antialias, Filter, Occlusion, Shading};
-use zeroset_scene::view::View;
+use zeroset_shade::view::View;
 
 /// All that tiles of one rendering have in common.
 pub(crate) struct Job<'a> {
@@ -578,7 +578,7 @@ fn marks<S: Simd>(s: S, solid: &Solid<'_>, q: &mut Scratch) {
                 column.0[i] = x[k + i] - normal[k + i] * behind;
             }
         }
-        eval::marks(s, solid.program, &mut q.work, n);
+        zeroset_eval::marks(s, solid.program.marks(), &mut q.work, n);
         q.counts.material += n as u64;
         let marks = q.work.marks();
         q.hits.object[k..k + n].copy_from_slice(&marks.object.0[..n]);

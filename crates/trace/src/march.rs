@@ -12,10 +12,10 @@ use crate::simd::{Chosen, INSIDE, along, first_lanes, load, load_words, load3, s
 use crate::tile::{Rays, Solid, Spans};
 use fearless_simd::{Simd, prelude::*};
 use std::ops::Range;
-use zeroset_field::eval::{self, BATCH, Workspace};
-use zeroset_field::number::lanes::LaneMask;
-use zeroset_field::number::{Lanes, Ops, Real, Vec3};
-use zeroset_scene::view::{Linear, ROUNDING};
+use zeroset_eval::{BATCH, Workspace};
+use zeroset_number::lanes::LaneMask;
+use zeroset_number::{Lanes, Ops, Real, Vec3};
+use zeroset_shade::view::{Linear, ROUNDING};
 
 /// Where the pixel (or hit) of a word ends and the iteration begins.
 pub(crate) const ORDINAL_BITS: u32 = 12;
@@ -32,7 +32,7 @@ pub(crate) fn age(word: u32, iteration: u32) -> u32 {
 
 /// Where the rays of a stream come from.
 pub(crate) trait Source<S: Simd> {
-    /// What differs from ray to ray (see [`zeroset_scene::view::View::ray`]), for those from number `i` on.
+    /// What differs from ray to ray (see [`zeroset_shade::view::View::ray`]), for those from number `i` on.
     fn ray(&self, s: S, i: usize) -> Vec3<Lanes<S>>;
     /// Which of the rays from number `i` on there are.
     fn exists(&self, s: S, i: usize) -> LaneMask<S>;
@@ -209,7 +209,7 @@ fn sample<S: Simd>(s: S, solid: &Solid<'_>, rays: &Rays, work: &mut Workspace) {
         let at = along(o, d, load(s, &rays.t, i) + load(s, &rays.z, i).abs());
         store3(at, points, i);
     }
-    eval::values(s, solid.program, work, rays.count);
+    zeroset_eval::values(s, solid.program.values(), work, rays.count);
 }
 
 /// Moves every ray on, and takes those out that arrived or left.

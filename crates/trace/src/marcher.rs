@@ -11,7 +11,7 @@
 //! it: a body that is not longer than that along the ray may be passed.
 
 use fearless_simd::{Simd, prelude::*};
-use zeroset_field::number::{Lanes, Real};
+use zeroset_number::{Lanes, Real};
 
 /// Numbers whose reciprocal can be had cheaply where it need not be right: a step that is a little off is still tested.
 pub(crate) trait Rough: Real<Scalar = f32> {

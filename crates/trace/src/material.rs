@@ -2,8 +2,8 @@
 
 use crate::simd::{constant, each, splat3};
 use fearless_simd::{Simd, prelude::*};
-use zeroset_field::catalogue::noise::gradient_noise;
-use zeroset_field::number::{Lanes, Real, Vec3, v3};
+use zeroset_catalogue::noise::gradient_noise;
+use zeroset_number::{Lanes, Real, Vec3, v3};
 use zeroset_scene::material::{Image, Pattern};
 
 /// A place on a surface, as far as its colour depends on it.

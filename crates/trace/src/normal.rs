@@ -6,8 +6,9 @@ use crate::simd::{
 };
 use crate::tile::{Hits, Scratch, Solid};
 use fearless_simd::{Simd, prelude::*};
-use zeroset_field::eval::{self, BATCH, Lane, Workspace};
-use zeroset_field::number::{Lanes, Ops, Real, Vec3, v3};
+use zeroset_eval::{BATCH, Lane, Workspace};
+use zeroset_field::program::FLAT;
+use zeroset_number::{Lanes, Ops, Real, Vec3, v3};
 use zeroset_scene::settings::Normals;
 
 /// Least distance between the samples of a normal, as a share of the largest coordinate: with less, the rounding of single
@@ -225,7 +226,7 @@ fn refine_rest<S: Simd>(
                 column.0[j] = x;
             }
         }
-        eval::values(s, solid.program, &mut q.work, count);
+        zeroset_eval::values(s, solid.program.values(), &mut q.work, count);
         q.counts.march += count as u64;
         let mut kept = 0;
         for j in 0..count {
@@ -262,7 +263,7 @@ pub(crate) fn values_at<S: Simd>(
         return;
     }
     fill(n, work, point);
-    eval::values(s, solid.program, work, n);
+    zeroset_eval::values(s, solid.program.values(), work, n);
 }
 
 /// What is shown as the distance to the surface, at `n` points that are made by vectors: the value of the field where it is
@@ -287,11 +288,11 @@ pub(crate) fn sample<S: Simd>(
 /// The second kind of [`sample`], where the points are there already.
 #[inline(always)]
 pub(crate) fn distances<S: Simd>(s: S, solid: &Solid<'_>, n: usize, work: &mut Workspace) {
-    eval::gradients(s, solid.program, work, n);
+    zeroset_eval::gradients(s, solid.program.values(), work, n);
     for i in (0..n).step_by(S::f32s::LEN) {
         let f = load(s, &work.gradient_values().0, i);
         let slope = load3(s, work.gradients(), i).length();
-        let distance = f / slope.max(eval::FLAT);
+        let distance = f / slope.max(FLAT);
         store(distance, &mut work.values_mut().0, i);
     }
 }
@@ -434,7 +435,7 @@ fn by_gradients<S: Simd>(s: S, solid: &Solid<'_>, q: &mut Scratch) {
                             along(load3(s, &hits.point, k + i), d, -by)
                         },
                     );
-                    eval::gradients(s, solid.program, &mut q.work, n);
+                    zeroset_eval::gradients(s, solid.program.values(), &mut q.work, n);
                     q.counts.normal += n as u64;
                     let mut any = false;
                     for i in (0..n).step_by(S::f32s::LEN) {

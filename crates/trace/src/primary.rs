@@ -7,10 +7,10 @@ use crate::order;
 use crate::simd::{Chosen, INSIDE, Sheet, load};
 use crate::tile::{Area, HEIGHT, Hits, Rays, Scratch, Solid, WIDTH};
 use fearless_simd::{Simd, prelude::*};
-use zeroset_field::number::lanes::LaneMask;
-use zeroset_field::number::{Lanes, Ops, Real, Vec3};
+use zeroset_number::lanes::LaneMask;
+use zeroset_number::{Lanes, Ops, Real, Vec3};
 use zeroset_scene::settings::March;
-use zeroset_scene::view::Linear;
+use zeroset_shade::view::Linear;
 
 /// How the march of a picture is done.
 #[derive(Clone, Copy, Debug)]

@@ -11,17 +11,18 @@ use std::collections::BTreeSet;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
-use zeroset_field::bounds::Aabb;
-use zeroset_field::catalogue::entries::catalogue;
+use zeroset_catalogue::bounds::Aabb;
+use zeroset_catalogue::entries::catalogue;
+use zeroset_catalogue::tape::Operation;
 use zeroset_field::field::Field;
-use zeroset_field::program::{Limits, Operation, Program};
+use zeroset_field::program::{Limits, Program};
 use zeroset_scene::film::{Film, Plane, SUMS};
 use zeroset_scene::material::Pattern;
 use zeroset_scene::render::{Evaluations, Frame, Observer, RenderError, Renderer, Statistics};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Occlusion};
-use zeroset_scene::skin::has_skins;
-use zeroset_scene::view::Region;
+use zeroset_shade::skin::has_skins;
+use zeroset_shade::view::Region;
 
 /// The CPU's renderer: sphere tracing in SIMD streams, over all threads that it is given.
 ///

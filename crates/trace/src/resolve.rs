@@ -8,7 +8,7 @@ use crate::sampling::{radius, weight};
 use crate::simd::{fma, load, load3, splat, store};
 use crate::tile::{Area, HEIGHT, WIDTH};
 use fearless_simd::{Simd, prelude::*};
-use zeroset_field::number::{Lanes, Ops, Real};
+use zeroset_number::{Lanes, Ops, Real};
 use zeroset_scene::film::Plane;
 use zeroset_scene::settings::Filter;
 

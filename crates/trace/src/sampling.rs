@@ -1,6 +1,6 @@
 //! Where samples go, the same in every run: low-discrepancy sequences scrambled by pixel, and the pixel's filter.
 
-use zeroset_field::number::{Real, Vec3, v3};
+use zeroset_number::{Real, Vec3, v3};
 use zeroset_scene::settings::Filter;
 
 /// The first two dimensions of Sobol's sequence (1967), as fractions of 2^32: any 2^k first points are spread evenly over

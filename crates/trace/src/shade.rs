@@ -1,7 +1,7 @@
 //! How light becomes colour: each term one formula over any number type.
 
 use crate::simd::each;
-use zeroset_field::number::{Real, Vec3};
+use zeroset_number::{Real, Vec3};
 use zeroset_scene::light::{Light, Sky, Source};
 use zeroset_scene::settings::Shading;
 
@@ -158,7 +158,7 @@ pub(crate) fn colour<R: Real<Scalar = f32>>(
 mod tests {
     use super::*;
     use glam::Vec3 as G;
-    use zeroset_field::number::v3;
+    use zeroset_number::v3;
     use zeroset_scene::settings::Shadow;
 
     #[test]

@@ -4,8 +4,8 @@ use crate::beam::{Aim, Penumbra, stream};
 use crate::simd::{constant, load3, splat, store};
 use crate::tile::{Scratch, Solid};
 use fearless_simd::{Simd, prelude::*};
-use zeroset_field::number::lanes::LaneMask;
-use zeroset_field::number::{Lanes, Ops, Real, Vec3, v3};
+use zeroset_number::lanes::LaneMask;
+use zeroset_number::{Lanes, Ops, Real, Vec3, v3};
 use zeroset_scene::light::{Light, Source};
 use zeroset_scene::settings::Shadow;
 

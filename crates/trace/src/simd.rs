@@ -3,9 +3,9 @@
 
 use fearless_simd::{Simd, prelude::*};
 use std::ops::{Deref, DerefMut};
-use zeroset_field::eval::{BATCH, Lane};
-use zeroset_field::number::lanes::LaneMask;
-use zeroset_field::number::{Lanes, Real, Vec3, v3};
+use zeroset_eval::{BATCH, Lane};
+use zeroset_number::lanes::LaneMask;
+use zeroset_number::{Lanes, Real, Vec3, v3};
 
 /// Lanes behind the last one that vectors may write garbage to.
 pub(crate) const SLACK: usize = 64;

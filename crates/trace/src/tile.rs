@@ -4,10 +4,10 @@ use crate::march::ITERATIONS;
 use crate::planes::Planes;
 use crate::simd::{Row, SLACK, Sheet, TILE_RAYS, WordRow, WordSheet};
 use crate::stop::Stop;
-use zeroset_field::eval::Workspace;
+use zeroset_eval::Workspace;
 use zeroset_field::program::Program;
 use zeroset_scene::render::Evaluations;
-use zeroset_scene::view::{Region, View};
+use zeroset_shade::view::{Region, View};
 
 /// Pixels of a tile from left to right.
 pub(crate) const WIDTH: usize = 64;
@@ -234,7 +234,7 @@ impl Scratch {
     pub(crate) fn new(program: &Program) -> Scratch {
         let row = || *Row::boxed();
         Scratch {
-            work: Workspace::new(program),
+            work: Workspace::new(program.values(), program.marks()),
             jitter: [Sheet::boxed(), Sheet::boxed()],
             spans: Spans::new(),
             parents: Spans::new(),

@@ -10,8 +10,8 @@ mod nest;
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
+use zeroset_language::load::{Language, Options, load_text};
 use zeroset_scene::film::Plane;
-use zeroset_scene::load::{Language, Options, load_text};
 use zeroset_scene::render::{Renderer, Silent};
 use zeroset_trace::CpuRenderer;
 

@@ -1,7 +1,7 @@
 use super::*;
 use std::sync::atomic::AtomicUsize;
 use std::time::Duration;
-use zeroset_scene::load::{Language, Options, load_text};
+use zeroset_language::load::{Language, Options, load_text};
 use zeroset_scene::render::{Frame, Statistics};
 use zeroset_scene::settings::{Antialias, Filter, March};
 

@@ -5,8 +5,8 @@ use crate::engine::MakeBackend;
 use crate::loader::Explain;
 use eframe::egui::{ViewportBuilder, vec2};
 use std::path::PathBuf;
+use zeroset_language::load::Options;
 use zeroset_output::display::{NAME, name};
-use zeroset_scene::load::Options;
 
 /// What the window opens with.
 pub struct Open {

@@ -5,9 +5,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use zeroset_scene::load::{Control, Failed, Loaded, Options, Parameter, load};
-use zeroset_scene::report::Report;
-use zeroset_scene::watch::{PAUSE, Watched};
+use zeroset_language::load::{Control, Failed, Loaded, Options, Parameter, load};
+use zeroset_language::report::Report;
+use zeroset_language::watch::{PAUSE, Watched};
 
 /// What a person is told of a scene that cannot be loaded.
 pub type Explain = fn(&Failed) -> String;

@@ -307,7 +307,7 @@ choice! { Plane {
 mod tests {
     use super::*;
     use std::collections::HashSet;
-    use zeroset_scene::language::words;
+    use zeroset_language::starlark::words;
 
     fn table<T: Choice + PartialEq + std::fmt::Debug>() {
         let names: HashSet<_> = T::methods().iter().map(|m| m.name).collect();

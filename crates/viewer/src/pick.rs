@@ -107,7 +107,7 @@ fn described(material: &Material) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use zeroset_scene::load::{Language, Options, load_text};
+    use zeroset_language::load::{Language, Options, load_text};
     use zeroset_scene::render::{Renderer, Silent};
     use zeroset_trace::CpuRenderer;
 

@@ -2,9 +2,9 @@
 
 use glam::{DMat3, DQuat, DVec3, Vec3};
 use std::f64::consts::FRAC_PI_2;
-use zeroset_field::bounds::Aabb;
+use zeroset_catalogue::bounds::Aabb;
+use zeroset_language::framing::fit;
 use zeroset_scene::camera::{Camera, Lens};
-use zeroset_scene::framing::fit;
 
 /// Nearest that a zoom comes to what it goes to, scene units.
 const CLOSEST: f64 = 1e-5;
@@ -279,7 +279,7 @@ pub fn widened(camera: &Camera, aspect: f32, shape: [u32; 2]) -> Camera {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use zeroset_scene::load::{Language, Options, load_text};
+    use zeroset_language::load::{Language, Options, load_text};
 
     fn rig() -> Rig {
         let lens = Lens::Pinhole { fov: 0.7 };

@@ -2,12 +2,12 @@
 
 use crate::session::Session;
 use std::path::{Path, PathBuf};
+use zeroset_language::naming::default_stem;
 use zeroset_output::atomic::write_atomically;
 use zeroset_output::format::png::{self, Depth};
 use zeroset_output::format::{Notes, exr};
 use zeroset_output::view::View;
 use zeroset_scene::film::Plane;
-use zeroset_scene::naming::default_stem;
 
 /// The name of a picture that was given none: from the file's name, whatever the scene calls itself.
 pub(crate) fn default_name(session: &Session) -> String {

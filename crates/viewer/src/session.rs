@@ -8,12 +8,12 @@ use crate::rig::{Rig, widened};
 use crate::slice::Slice;
 use std::path::PathBuf;
 use std::sync::Arc;
+use zeroset_language::load::{Loaded, Options, Parameter, Setting};
+use zeroset_language::naming::default_stem;
 use zeroset_output::display::{NAME, name};
 use zeroset_output::view::Key;
 use zeroset_scene::camera::Camera;
 use zeroset_scene::film::Plane;
-use zeroset_scene::load::{Loaded, Options, Parameter, Setting};
-use zeroset_scene::naming::default_stem;
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::Settings;
 
@@ -327,7 +327,7 @@ fn read(like: &Setting, text: &str) -> Option<Setting> {
             "false" | "off" | "no" | "0" => Setting::Flag(false),
             _ => return None,
         },
-        Setting::Colour(_) => Setting::Colour(zeroset_scene::colour::parse(text.trim()).ok()?),
+        Setting::Colour(_) => Setting::Colour(zeroset_language::colour::parse(text.trim()).ok()?),
     })
 }
 

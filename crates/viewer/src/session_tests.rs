@@ -1,5 +1,5 @@
 use super::*;
-use zeroset_scene::load::{Language, load_text};
+use zeroset_language::load::{Language, load_text};
 use zeroset_scene::settings::{March, Normals, Shadow};
 
 fn outcome(text: &str, options: &Options, is_edit: bool) -> Outcome {

@@ -6,8 +6,8 @@ use eframe::egui::{Color32, ColorImage};
 use fearless_simd::{Level, dispatch};
 use glam::Vec3;
 use std::sync::Arc;
-use zeroset_field::bounds::Aabb;
-use zeroset_field::eval::{BATCH, Workspace, gradients};
+use zeroset_catalogue::bounds::Aabb;
+use zeroset_eval::{BATCH, Workspace, gradients};
 use zeroset_field::program::{Limits, Program};
 use zeroset_output::view::section::Section;
 use zeroset_scene::film::{Film, Plane};
@@ -100,7 +100,7 @@ impl Compiled {
         let program = Program::compile(&field, &Limits::default()).ok()?;
         Some(Compiled {
             scene: Arc::clone(scene),
-            workspace: Workspace::new(&program),
+            workspace: Workspace::new(program.values(), program.marks()),
             program,
             room: Slice::room(scene),
             farthest: None,
@@ -193,9 +193,9 @@ impl Compiled {
                 }
             }
             let (program, workspace) = (&self.program, &mut self.workspace);
-            dispatch!(level, s => gradients(s, program, workspace, n));
+            dispatch!(level, s => gradients(s, program.values(), workspace, n));
             for i in 0..n {
-                let (value, gradient) = self.workspace.shown_distance(&self.program, i);
+                let (value, gradient) = self.program.shown_distance(self.workspace.gradient(i));
                 values.push(value);
                 slopes.push(Vec3::from(gradient));
             }
@@ -215,7 +215,7 @@ fn blend(under: Color32, over: Color32, share: f32) -> Color32 {
 mod tests {
     use super::*;
     use crate::engine::Look;
-    use zeroset_scene::load::{Language, Options, load_text};
+    use zeroset_language::load::{Language, Options, load_text};
     use zeroset_scene::render::{Renderer, Silent};
     use zeroset_trace::CpuRenderer;
 

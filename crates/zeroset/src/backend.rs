@@ -232,7 +232,7 @@ mod tests {
     use super::*;
     use std::cell::Cell;
     use zeroset_gpu::testing::{Faults, with_faults};
-    use zeroset_scene::load::{Language, Options, load_text};
+    use zeroset_language::load::{Language, Options, load_text};
     use zeroset_scene::render::Silent;
 
     type Outcome = Result<(Frame, Used), RenderError>;

@@ -91,8 +91,8 @@ impl From<ReadError> for Failure {
     }
 }
 
-impl From<zeroset_scene::load::Failed> for Failure {
-    fn from(failed: zeroset_scene::load::Failed) -> Self {
+impl From<zeroset_language::load::Failed> for Failure {
+    fn from(failed: zeroset_language::load::Failed) -> Self {
         // A file that is there and cannot be read says nothing about the scene, nor does the scene's own that is not there;
         // that another one is not there does.
         let is_unreadable = |(number, path): (usize, &PathBuf)| match readable(path) {

@@ -7,9 +7,9 @@ use indicatif::ProgressBar;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use zeroset_language::naming::default_stem;
 use zeroset_output::atomic::write_atomically;
 use zeroset_output::display;
-use zeroset_scene::naming::default_stem;
 use zeroset_scene::render::Observer;
 
 /// The name of a file in this folder that was given none. What a scene says of itself has no part in it.

@@ -2,8 +2,13 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`field`] | numbers, the catalogue of fields, field trees, programs |
-//! | [`scene`] | scenes and the language they are written in |
+//! | [`number`] | number types that formulas are evaluated over |
+//! | [`catalogue`] | the formulas of shapes, maps, modifiers and joins |
+//! | [`field`] | field trees, and the programs that they compile to |
+//! | [`eval`] | evaluators of programs |
+//! | [`scene`] | scenes, films, and what a renderer is |
+//! | [`language`] | scene files |
+//! | [`shade`] | what is seen and how it looks |
 //! | [`trace`] | the renderer on the CPU |
 //! | [`shader`] | shaders for any scene, in WGSL and GLSL |
 //! | `gpu` | the renderer on the GPU, with the feature of that name |
@@ -14,7 +19,7 @@
 //!
 //! ```
 //! use zeroset::output::{atomic, format, picture::Picture};
-//! use zeroset::scene::load::{Language, Options, load_text};
+//! use zeroset::language::load::{Language, Options, load_text};
 //! use zeroset::scene::render::{Renderer, Silent};
 //! use zeroset::trace::CpuRenderer;
 //!
@@ -39,10 +44,15 @@
 
 pub mod section;
 
+pub use zeroset_catalogue as catalogue;
+pub use zeroset_eval as eval;
 pub use zeroset_field as field;
 #[cfg(feature = "gpu")]
 pub use zeroset_gpu as gpu;
+pub use zeroset_language as language;
+pub use zeroset_number as number;
 pub use zeroset_output as output;
 pub use zeroset_scene as scene;
+pub use zeroset_shade as shade;
 pub use zeroset_shader as shader;
 pub use zeroset_trace as trace;

@@ -3,13 +3,11 @@
 
 use serde::Serialize;
 use std::fmt::Write;
-use zeroset_field::bounds::{Aabb, Exactness};
-use zeroset_field::catalogue::entries::{
-    Catalogue, MapEntry, ModifyEntry, PrimitiveEntry, catalogue,
-};
-use zeroset_field::catalogue::{Dimension, Info, Kind, Param, Stretch, Unit};
-use zeroset_scene::language::{Word, words};
-use zeroset_scene::limits::{LIMITS, Limits};
+use zeroset_catalogue::bounds::{Aabb, Exactness};
+use zeroset_catalogue::entries::{Catalogue, MapEntry, ModifyEntry, PrimitiveEntry, catalogue};
+use zeroset_catalogue::{Dimension, Info, Kind, Param, Stretch, Unit};
+use zeroset_language::limits::{LIMITS, Limits};
+use zeroset_language::starlark::{Word, words};
 
 /// What is known about a name.
 #[derive(Clone, Debug, Serialize)]

@@ -142,7 +142,7 @@ impl SourceCode for Excerpt {
 mod tests {
     use super::*;
     use miette::MietteDiagnostic;
-    use zeroset_scene::load::{Language, Options, load_text};
+    use zeroset_language::load::{Language, Options, load_text};
 
     fn report(scene: &str) -> String {
         let options = Options::default();

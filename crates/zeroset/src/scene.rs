@@ -7,9 +7,9 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, Read};
 use std::path::Path;
+use zeroset_language::limits::Limits;
+use zeroset_language::load::{Failed, Loaded, Options, load};
 use zeroset_output::display::LINES;
-use zeroset_scene::limits::Limits;
-use zeroset_scene::load::{Failed, Loaded, Options, load};
 
 /// What the flags say about loading.
 pub(crate) fn options(args: &SceneArgs, size: Option<[u32; 2]>) -> Result<Options, Failure> {

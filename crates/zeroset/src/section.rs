@@ -1,7 +1,7 @@
 //! Sections: a field on a plane across an axis.
 
 use fearless_simd::{Level, dispatch};
-use zeroset_field::eval::{BATCH, Workspace, gradients};
+use zeroset_eval::{BATCH, Workspace, gradients};
 use zeroset_field::program::Program;
 use zeroset_output::view::section::Section;
 
@@ -48,7 +48,7 @@ impl Plane {
         let [width, height] = size;
         let count = width as usize * height as usize;
         let (mut values, mut slopes) = (Vec::with_capacity(count), Vec::with_capacity(count));
-        let mut workspace = Workspace::new(program);
+        let mut workspace = Workspace::new(program.values(), program.marks());
         let level = Level::new();
         for first in (0..count).step_by(BATCH) {
             let n = BATCH.min(count - first);
@@ -63,10 +63,10 @@ impl Plane {
                     lane.0[i] = x as f32;
                 }
             }
-            dispatch!(level, s => gradients(s, program, &mut workspace, n));
+            dispatch!(level, s => gradients(s, program.values(), &mut workspace, n));
             let [(right, _), (up, _)] = self.directions();
             for i in 0..n {
-                let (value, gradient) = workspace.shown_distance(program, i);
+                let (value, gradient) = program.shown_distance(workspace.gradient(i));
                 values.push(value);
                 slopes.push(gradient[right].hypot(gradient[up]));
             }
@@ -84,7 +84,7 @@ impl Plane {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use zeroset_field::catalogue::entries::catalogue;
+    use zeroset_catalogue::entries::catalogue;
     use zeroset_field::field::Field;
     use zeroset_field::placement::Placement;
     use zeroset_field::program::Limits;

@@ -1,11 +1,11 @@
 //! What a few looks at a field tell of a scene: whether the camera stands in a solid, how loose a bound is, what single
 //! precision still tells apart.
 
-use zeroset_field::bounds::Aabb;
-use zeroset_field::eval::Point;
+use zeroset_catalogue::bounds::Aabb;
+use zeroset_eval::Point;
 use zeroset_field::field::Field;
-use zeroset_field::number::{Dual, F64, Vec3, v3};
 use zeroset_field::program::{Limits, Program};
+use zeroset_number::{Dual, F64, Vec3, v3};
 use zeroset_scene::camera::Camera;
 use zeroset_scene::scene::Scene;
 
@@ -26,7 +26,7 @@ pub(crate) fn around_camera(scene: &Scene) -> Option<&str> {
         .to_array();
     let inside = |field: &Field| {
         let program = Program::compile(field, &Limits::default()).ok()?;
-        Some(Point::<F64>::new(&program).value(at(from)).0 < 0.0)
+        Some(Point::<F64>::new(program.values()).value(at(from)).0 < 0.0)
     };
     let holds = |b: &Aabb| b.contains(from);
     (scene.objects.iter())
@@ -51,8 +51,8 @@ pub(crate) fn looseness(field: &Field) -> Option<f64> {
         return None;
     }
     let (mut values, mut gradients) = (
-        Point::<F64>::new(&program),
-        Point::<Dual<F64>>::new(&program),
+        Point::<F64>::new(program.values()),
+        Point::<Dual<F64>>::new(program.values()),
     );
     let mut slopes = Vec::new();
     for ray in 0..RAYS {
@@ -114,7 +114,7 @@ pub(crate) fn coarse(scene: &Scene) -> Option<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use zeroset_scene::load::{Language, Options, load_text};
+    use zeroset_language::load::{Language, Options, load_text};
 
     fn scene(text: &str) -> Scene {
         load_text(

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 use std::path::PathBuf;
-use zeroset::field::bounds::Exactness;
-use zeroset::field::catalogue::entries::catalogue;
-use zeroset::field::catalogue::{Info, Kind, LARGE, Unit};
+use zeroset::catalogue::bounds::Exactness;
+use zeroset::catalogue::entries::catalogue;
+use zeroset::catalogue::{Info, Kind, LARGE, Unit};
 
 fn number(x: f64, unit: Unit) -> String {
     let x = match unit {

@@ -2,11 +2,11 @@
 
 use super::print::{number, text};
 use super::{Binary, LARGEST, Step, Steps, Unary};
-use crate::number::F64;
-use crate::op::arithmetic;
 use std::collections::HashMap;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use zeroset_catalogue::op::arithmetic;
+use zeroset_number::F64;
 
 /// Most steps of a formula.
 pub const MAX_STEPS: usize = 1_000_000;

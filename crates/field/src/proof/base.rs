@@ -1,10 +1,10 @@
 //! Powers and logarithms: whether what they are of can be negative.
 
 use super::{Budget, Cause, Cell, Obstacle, ProofError, Tape};
-use crate::bounds::Aabb;
 use crate::formula::{Binary, Step, Unary};
-use crate::number::{F64, v3};
 use std::collections::VecDeque;
+use zeroset_catalogue::bounds::Aabb;
+use zeroset_number::{F64, v3};
 
 /// A base that falls below 0 by no more than this part of its size counts as 0: rounding does as much.
 const HAIR: f64 = 1e-6;

@@ -2,9 +2,9 @@
 
 use super::search::Waiting;
 use super::{Budget, Cell, Tape};
-use crate::bounds::Aabb;
-use crate::number::{Dual, F64, v3};
 use std::collections::BinaryHeap;
+use zeroset_catalogue::bounds::Aabb;
+use zeroset_number::{Dual, F64, v3};
 
 /// Length of the gradient at a point; 0 where it has none.
 pub(super) fn gradient(tape: &Tape, [x, y, z]: [f64; 3], duals: &mut Vec<Dual<F64>>) -> f64 {

@@ -3,10 +3,10 @@
 use super::jet::Jet;
 use super::place;
 use super::tape::{Cell, Tape};
-use crate::bounds::Aabb;
 use crate::formula::print::{number, text};
 use crate::formula::{Binary, Step, Unary};
 use std::fmt;
+use zeroset_catalogue::bounds::Aabb;
 
 /// What a step may do that has no slope.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

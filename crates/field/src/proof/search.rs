@@ -2,11 +2,11 @@
 
 use super::look::gradient;
 use super::{Budget, Cell, Jet, Obstacle, ProofError, Tape};
-use crate::bounds::Aabb;
 use crate::formula::STEEPEST;
-use crate::number::{Dual, F64};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+use zeroset_catalogue::bounds::Aabb;
+use zeroset_number::{Dual, F64};
 
 /// What a search found.
 #[derive(Debug)]

@@ -1,9 +1,9 @@
 //! A formula as the proof runs it.
 
 use super::jet::Jet;
-use crate::bounds::Aabb;
 use crate::formula::{Binary, Step, Steps, Unary};
-use crate::number::{Interval, Real, Slope, Vec3, v3};
+use zeroset_catalogue::bounds::Aabb;
+use zeroset_number::{Interval, Real, Slope, Vec3, v3};
 
 /// A box: smallest and largest corner.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,8 +2,8 @@
 
 use skrifa::outline::OutlinePen;
 
-use crate::catalogue::Primitive;
-use crate::catalogue::flat::{Outline, winding};
+use zeroset_catalogue::Primitive;
+use zeroset_catalogue::flat::{Outline, winding};
 
 /// A straight piece: x and y of its start and its end.
 pub(super) type Piece = [f64; 4];

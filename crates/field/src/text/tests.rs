@@ -1,9 +1,9 @@
 use super::contour::Piece;
 use super::*;
-use crate::catalogue::Primitive;
-use crate::catalogue::flat::{Outline, winding};
-use crate::number::{Args, F64, v3};
 use proptest::prelude::*;
+use zeroset_catalogue::Primitive;
+use zeroset_catalogue::flat::{Outline, winding};
+use zeroset_number::{Args, Data, F64, v3};
 
 fn set(text: &str, layout: &Layout) -> Text {
     Font::new(default_font(), 0)
@@ -12,8 +12,8 @@ fn set(text: &str, layout: &Layout) -> Text {
 }
 
 fn distance(outline: &[f64], x: f64, y: f64) -> f64 {
-    let stored: Vec<f32> = outline.iter().map(|&x| x as f32).collect();
-    Outline::distance(v3(F64(x), F64(y), F64(0.0)), Args::new(&stored[..])).0
+    let stored = Data::from(outline.iter().map(|&x| x as f32).collect::<Vec<f32>>());
+    Outline::distance(v3(F64(x), F64(y), F64(0.0)), Args::new(&stored)).0
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::steps;
 use zeroset_field::formula::{
     Binary, BuildError, Builder, Expression, MAX_STEPS, Step, Steps, StepsError, Unary, functions,
 };
-use zeroset_field::number::{F64, v3};
+use zeroset_number::{F64, v3};
 
 const P: [f64; 3] = [0.3, -0.7, 1.1];
 

@@ -1,15 +1,13 @@
-//! Free-form formulas: how they are written down, that their slopes are proven, what they compile to.
+//! Free-form formulas: how they are written down and that their slopes are proven.
 
 #![allow(unreachable_pub, reason = "nothing outside a test can use it")]
 
 mod build;
-mod compiled;
 mod proof;
 mod random;
 mod refusal;
-mod shader;
 
-use zeroset_field::bounds::Aabb;
+use zeroset_catalogue::bounds::Aabb;
 use zeroset_field::formula::{Budget, Builder, Expression, Formula, ProofError, Steps};
 
 /// The steps of a formula of the point.

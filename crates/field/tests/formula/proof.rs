@@ -2,7 +2,7 @@
 
 use super::{proven, steps};
 use std::f64::consts::SQRT_2;
-use zeroset_field::bounds::Aabb;
+use zeroset_catalogue::bounds::Aabb;
 use zeroset_field::formula::{Budget, Expression, Formula};
 
 /// The proven slope is no less than the true one, and no more than so many times it.

@@ -4,9 +4,9 @@ use super::Random;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
-use zeroset_field::bounds::Aabb;
+use zeroset_catalogue::bounds::Aabb;
 use zeroset_field::formula::{Binary, Budget, Formula, ProofError, Step, Steps, Unary};
-use zeroset_field::number::{Dual, F64, Interval, v3};
+use zeroset_number::{Dual, F64, Interval, v3};
 
 /// A step from four numbers, whatever they are: operands are earlier steps, mostly the latest.
 fn step(at: usize, [kind, a, b]: [u32; 3], constant: f64) -> Step {

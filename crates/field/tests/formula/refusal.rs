@@ -1,7 +1,7 @@
 //! Formulas without a slope, and what is said of them.
 
 use super::{proven, steps};
-use zeroset_field::bounds::Aabb;
+use zeroset_catalogue::bounds::Aabb;
 use zeroset_field::formula::{Budget, Cause, Expression, Formula, Obstacle, ProofError};
 
 fn obstacle(half: f64, f: impl Fn(&Expression) -> Expression) -> Obstacle {

@@ -1,9 +1,10 @@
 //! The field as code: a line for each instruction, results as `p12` (points), `d12` (values) and `m12` (marks).
 
 use super::{Functions, MARKS, Operand, Plain, Step, plain_marks, steps};
+use crate::field::recorded::Form;
 use std::fmt::Write;
-use zeroset_field::op::recorded::Form;
-use zeroset_field::program::{Operation, Structure};
+use zeroset_catalogue::tape::Operation;
+use zeroset_field::program::Structure;
 
 pub(super) fn text(structure: &Structure) -> String {
     let mut functions = Functions::default();

@@ -8,10 +8,11 @@
 use super::{
     FieldSource, Functions, MARKS, Operand, Registers, has_traps, memory, name, plain_marks, steps,
 };
+use crate::field::recorded::Form;
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use zeroset_field::op::recorded::Form;
-use zeroset_field::program::{Code, Instruction, Operation, Structure};
+use zeroset_catalogue::tape::{Code, Instruction, Operation};
+use zeroset_field::program::Structure;
 
 /// Words before the first instruction.
 pub(super) const HEAD: u32 = 4;

@@ -6,9 +6,9 @@
 
 use super::interpreted::{FETCH, HEAD, Operations, PLAIN_MARKS, WORDS};
 use super::{Functions, MARKS, has_traps};
+use crate::field::recorded::Form;
 use std::fmt::Write;
-use zeroset_field::op::recorded::Form;
-use zeroset_field::program::Operation;
+use zeroset_catalogue::tape::Operation;
 
 /// Instructions a turn of the loop.
 pub(super) const UNROLLED: u32 = 4;

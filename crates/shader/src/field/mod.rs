@@ -3,14 +3,16 @@
 //! As code ([`FieldSource::compiled`]) each instruction of the program is a line; as data ([`FieldSource::interpreted`])
 //! the shader is a loop over the instructions, which programs that use the same operations share.
 
+use recorded::Form;
 use std::collections::BTreeMap;
-use zeroset_field::number::wgsl;
-use zeroset_field::op::recorded::{self, Form};
-use zeroset_field::program::{Code, Operation, Structure};
+use zeroset_catalogue::tape::{Code, Operation};
+use zeroset_field::program::Structure;
+use zeroset_number::wgsl;
 
 mod compiled;
 mod interpreted;
 mod memory;
+pub mod recorded;
 
 /// The field's part of a shader module, in WGSL.
 ///

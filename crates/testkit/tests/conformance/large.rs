@@ -4,8 +4,8 @@
 use crate::{check, none, on, reference};
 use std::collections::BTreeSet;
 use zeroset::gpu::testing;
+use zeroset::language::load::{Language, Options, load_text};
 use zeroset::scene::film::{Film, Plane};
-use zeroset::scene::load::{Language, Options, load_text};
 use zeroset::scene::scene::Scene;
 use zeroset::scene::settings::{Antialias, Occlusion};
 use zeroset::trace::CpuRenderer;

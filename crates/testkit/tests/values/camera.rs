@@ -2,8 +2,8 @@
 
 use crate::known::{Check, Draw, Eye, Found, Lens, SIZE, ball, compare, loaded, scene, value};
 use glam::DVec3;
+use zeroset::language::load::{Language, Options, load_text};
 use zeroset::scene::film::Plane;
-use zeroset::scene::load::{Language, Options, load_text};
 
 pub const CHECKS: [Check; 3] = [
     Check {

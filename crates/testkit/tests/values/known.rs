@@ -1,8 +1,8 @@
 //! Cameras, colours and comparisons in double precision, written anew.
 
 use glam::{DVec2, DVec3};
+use zeroset::language::load::{Language, Options, load_text};
 use zeroset::scene::film::{Film, Plane};
-use zeroset::scene::load::{Language, Options, load_text};
 use zeroset::scene::scene::Scene;
 
 /// A renderer.

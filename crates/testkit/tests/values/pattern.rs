@@ -2,8 +2,8 @@
 
 use crate::known::{Check, Draw, Eye, FACES, Found, Lens, SIZE, compare, light, rgb, scene, value};
 use glam::{DVec2, DVec3};
-use zeroset::field::catalogue::noise::gradient_noise;
-use zeroset::field::number::{F64, v3};
+use zeroset::catalogue::noise::gradient_noise;
+use zeroset::number::{F64, v3};
 use zeroset::scene::film::Plane;
 
 pub const CHECKS: [Check; 8] = [

@@ -20,10 +20,10 @@ use crate::simd::{
 use crate::tile::{Scratch, Solid};
 use fearless_simd::{Simd, prelude::*};
 use std::ops::Range;
-use zeroset_field::eval::BATCH;
-use zeroset_field::number::lanes::LaneMask;
-use zeroset_field::number::{Lanes, Ops, Real, Vec3, v3};
-use zeroset_scene::skin;
+use zeroset_eval::BATCH;
+use zeroset_number::lanes::LaneMask;
+use zeroset_number::{Lanes, Ops, Real, Vec3, v3};
+use zeroset_shade::skin;
 
 /// Number of cones.
 pub(crate) const DIRECTIONS: usize = 11;

@@ -6,8 +6,8 @@ use crate::simd::{load_words, splat};
 use crate::tile::{Scratch, Solid};
 use fearless_simd::{Simd, prelude::*};
 use std::ops::Range;
-use zeroset_field::number::lanes::LaneMask;
-use zeroset_field::number::{Lanes, Ops, Real, Vec3};
+use zeroset_number::lanes::LaneMask;
+use zeroset_number::{Lanes, Ops, Real, Vec3};
 
 /// A ray that counts the more, the farther it gets: `1 - exp(-tau d)` (Tomczak 2012, equation 3.23; Iones et al. 2003).
 #[derive(Clone, Copy)]

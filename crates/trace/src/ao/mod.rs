@@ -11,8 +11,8 @@ use crate::simd::{load, load_words, sided};
 use crate::tile::{Scratch, Solid};
 use fearless_simd::Simd;
 use std::ops::Range;
-use zeroset_field::eval::BATCH;
-use zeroset_field::number::Lanes;
+use zeroset_eval::BATCH;
+use zeroset_number::Lanes;
 use zeroset_scene::settings::Occlusion;
 
 /// Up.

@@ -8,8 +8,8 @@ use crate::simd::{
 use crate::tile::{Scratch, Solid};
 use fearless_simd::{Simd, prelude::*};
 use std::ops::Range;
-use zeroset_field::eval::BATCH;
-use zeroset_field::number::{Lanes, Ops, Real, v3};
+use zeroset_eval::BATCH;
+use zeroset_number::{Lanes, Ops, Real, v3};
 
 /// Occlusion less than this is none: no picture can show it.
 const NOTHING: f32 = 1.0 / 4096.0;

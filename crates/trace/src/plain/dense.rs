@@ -1,8 +1,8 @@
 //! The oracle of the marchers: rays in double precision, with steps so short that nothing can be passed.
 
-use zeroset_field::eval::Point;
-use zeroset_field::number::{F64, v3};
+use zeroset_eval::Point;
 use zeroset_field::program::Program;
+use zeroset_number::{F64, v3};
 
 /// Marches a ray from `start` to `end` in double precision, by half of the field's value but not less than `least(t)`, to the
 /// first change of sign, and finds the place by bisection. Values that are up to twice too large would not matter.
@@ -14,7 +14,7 @@ pub fn march(
     end: f64,
     least: impl Fn(f64) -> f64,
 ) -> Option<f64> {
-    let mut point = Point::<F64>::new(program);
+    let mut point = Point::<F64>::new(program.values());
     let mut f = |t: f64| {
         let p: [F64; 3] = std::array::from_fn(|k| F64(o[k] + d[k] * t));
         point.value(v3(p[0], p[1], p[2])).0

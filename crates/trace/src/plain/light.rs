@@ -6,8 +6,8 @@ use crate::shade::arrival;
 use crate::shadow::{DARK, closest};
 use glam::Vec3;
 use zeroset_scene::settings::Shadow;
-use zeroset_scene::skin;
-use zeroset_scene::view::ROUNDING;
+use zeroset_shade::skin;
+use zeroset_shade::view::ROUNDING;
 
 /// A place on a surface that light falls on.
 pub(super) struct Surface {

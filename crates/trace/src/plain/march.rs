@@ -4,7 +4,7 @@ use super::{Plain, Probe, field, glam};
 use crate::normal::{CENTRAL, NEIGHBOURS_18, NEIGHBOURS_26, TETRAHEDRON, step};
 use glam::Vec3;
 use zeroset_scene::settings::{March, Normals};
-use zeroset_scene::view::ROUNDING;
+use zeroset_shade::view::ROUNDING;
 
 /// Where a ray ended.
 pub(super) struct Found {

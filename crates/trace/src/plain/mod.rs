@@ -19,21 +19,21 @@ use crate::shade::{Substance, colour, sky};
 use glam::Vec3;
 use light::Surface;
 use rayon::prelude::*;
-use zeroset_field::bounds::Aabb;
-use zeroset_field::number::v3;
+use zeroset_catalogue::bounds::Aabb;
 use zeroset_field::program::Program;
+use zeroset_number::v3;
 use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::material::Material;
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Filter, Settings};
-use zeroset_scene::skin::has_skins;
-use zeroset_scene::view::{Region, View};
+use zeroset_shade::skin::has_skins;
+use zeroset_shade::view::{Region, View};
 
-pub(crate) fn glam(v: zeroset_field::number::Vec3<f32>) -> Vec3 {
+pub(crate) fn glam(v: zeroset_number::Vec3<f32>) -> Vec3 {
     Vec3::new(v.x, v.y, v.z)
 }
 
-pub(crate) fn field(v: Vec3) -> zeroset_field::number::Vec3<f32> {
+pub(crate) fn field(v: Vec3) -> zeroset_number::Vec3<f32> {
     v3(v.x, v.y, v.z)
 }
 

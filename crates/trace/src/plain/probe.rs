@@ -2,9 +2,9 @@
 
 use fearless_simd::{Level, dispatch};
 use glam::Vec3;
-use zeroset_field::eval::{self, Point, Workspace};
-use zeroset_field::number::{Dual, v3};
+use zeroset_eval::{Point, Workspace};
 use zeroset_field::program::Program;
+use zeroset_number::{Dual, v3};
 
 /// The marks of a surface. Numbers are whole, -1 where there is none.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,9 +45,9 @@ impl<'p> Compiled<'p> {
     pub fn new(program: &'p Program, only: Option<Mark>) -> Self {
         Compiled {
             program,
-            values: Point::new(program),
-            gradients: Point::new(program),
-            marks: only.ok_or_else(|| Box::new(Workspace::new(program))),
+            values: Point::new(program.values()),
+            gradients: Point::new(program.values()),
+            marks: only.ok_or_else(|| Box::new(Workspace::new(program.values(), program.marks()))),
         }
     }
 }
@@ -69,7 +69,7 @@ impl Probe for Compiled<'_> {
         for (lane, c) in work.points_mut().iter_mut().zip(p.to_array()) {
             lane.0.fill(c);
         }
-        dispatch!(Level::new(), s => eval::marks(s, self.program, work, 1));
+        dispatch!(Level::new(), s => zeroset_eval::marks(s, self.program.marks(), work, 1));
         let m = work.marks();
         Mark {
             object: m.object.0[0],

@@ -4,15 +4,15 @@ use crate::scenes::{quick, stream};
 use glam::{DVec3, Vec3};
 use std::f64::consts::TAU;
 use std::path::Path;
-use zeroset_field::eval::Point;
-use zeroset_field::number::{F64, v3};
+use zeroset_eval::Point;
 use zeroset_field::program::Program;
+use zeroset_language::load::{Language, Options, load, load_text};
+use zeroset_number::{F64, v3};
 use zeroset_scene::film::{Film, Plane};
-use zeroset_scene::load::{Language, Options, load, load_text};
 use zeroset_scene::render::{Renderer, Silent};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Occlusion, Settings};
-use zeroset_scene::view::View;
+use zeroset_shade::view::View;
 use zeroset_trace::CpuRenderer;
 
 const CONES: Occlusion = Occlusion::Cones {
@@ -103,7 +103,7 @@ fn hits(scene: &Scene, film: &Film, oracle: &mut Oracle<'_>) -> Vec<Hit> {
             pixel as u32 / settings.size[0],
         );
         let (o, d) = view.split(view.ray(x as f32 + 0.5, y as f32 + 0.5));
-        let of = |v: zeroset_field::number::Vec3<f32>| Vec3::from(v.array()).as_dvec3();
+        let of = |v: zeroset_number::Vec3<f32>| Vec3::from(v.array()).as_dvec3();
         let (mut point, d) = (of(o) + of(d) * f64::from(t), of(d));
         let h = 1e-5 * f64::from(t);
         let normal = oracle.normal(point, h);
@@ -145,7 +145,7 @@ fn scene(text: &str, size: [u32; 2]) -> Scene {
 /// Openness and hits of the object of this number.
 fn seen(scene: &Scene, object: f32) -> Vec<(DVec3, f64)> {
     let program = program(scene);
-    let mut oracle = Oracle(Point::new(&program));
+    let mut oracle = Oracle(Point::new(program.values()));
     let film = stream(scene);
     let open = film.plane(Plane::Occlusion);
     let all = hits(scene, &film, &mut oracle);
@@ -243,7 +243,7 @@ fn tomczak_against_rays() {
             object.occlusion = None;
         }
         let program = program(&scene);
-        let mut oracle = Oracle(Point::new(&program));
+        let mut oracle = Oracle(Point::new(program.values()));
         let film = stream(&scene);
         let all = hits(&scene, &film, &mut oracle);
         let right: Vec<f64> = (all.iter())

@@ -1,7 +1,7 @@
 //! Scenes to compare on.
 
 use glam::Vec3;
-use zeroset_field::catalogue::entries::catalogue;
+use zeroset_catalogue::entries::catalogue;
 use zeroset_field::field::Field;
 use zeroset_field::placement::Placement;
 use zeroset_scene::camera::{Camera, Lens};

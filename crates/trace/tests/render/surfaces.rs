@@ -3,14 +3,14 @@
 use crate::compare::beside_edge;
 use crate::scenes::{object, quick, shape, stream, view};
 use glam::Vec3;
-use zeroset_field::catalogue::Dimension;
-use zeroset_field::catalogue::entries::catalogue;
-use zeroset_field::eval::Point;
+use zeroset_catalogue::Dimension;
+use zeroset_catalogue::entries::catalogue;
+use zeroset_eval::Point;
 use zeroset_field::field::Field;
-use zeroset_field::number::{F64, v3};
+use zeroset_language::load::{Language, Options, load_text};
+use zeroset_number::{F64, v3};
 use zeroset_scene::camera::{Camera, Lens};
 use zeroset_scene::film::{Film, Plane};
-use zeroset_scene::load::{Language, Options, load_text};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Filter, March, Occlusion};
 use zeroset_trace::CpuRenderer;
@@ -61,7 +61,7 @@ fn shadow_of(f: impl Fn(f64, f64, f64) -> f64, h: f64, n: usize) -> f64 {
 /// How many pixels of an orthographic view along -z show a normal that is not that of the first root along their ray.
 fn turned(scene: &Scene, film: &Film, f: &dyn Fn(f64, f64, f64) -> f64) -> usize {
     let [width, height] = scene.settings.size;
-    let view = zeroset_scene::view::View::new(&scene.camera, [width, height], 1.0);
+    let view = zeroset_shade::view::View::new(&scene.camera, [width, height], 1.0);
     let mut wrong = 0;
     for (i, (x, y)) in (0..height)
         .flat_map(|y| (0..width).map(move |x| (x, y)))
@@ -317,7 +317,7 @@ fn rays_never_begin_behind_a_surface() {
     let mut failures = Vec::new();
     for entry in &catalogue().primitives {
         if entry.info.dimension == Dimension::Two
-            || entry.exactness > zeroset_field::bounds::Exactness::Bound
+            || entry.exactness > zeroset_catalogue::bounds::Exactness::Bound
         {
             continue;
         }
@@ -369,7 +369,7 @@ fn behind(scene: &Scene) -> usize {
     let [width, height] = scene.settings.size;
     let (slope, constant) = scene.camera.pixel_width(height);
     let mut bad = 0;
-    let mut point = Point::<F64>::new(picture.program());
+    let mut point = Point::<F64>::new(picture.program().values());
     for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
         let found = f64::from(film.plane(Plane::Depth)[(y * width + x) as usize]);
         if !found.is_finite() || beside_edge(&film, x as usize, y as usize) {

@@ -3,8 +3,8 @@
 use crate::session::{Session, levels};
 use crate::widget::{aside, row, slide};
 use eframe::egui::{ComboBox, Slider, Ui};
+use zeroset_language::load::{Control, Parameter, Setting};
 use zeroset_output::display::{NAME, name as shown};
-use zeroset_scene::load::{Control, Parameter, Setting};
 
 /// The parameters of the scene.
 pub fn parameters(ui: &mut Ui, session: &mut Session) {

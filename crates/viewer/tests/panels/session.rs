@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 use std::time::Duration;
-use zeroset_scene::load::{Language, Options, load_text};
+use zeroset_language::load::{Language, Options, load_text};
 use zeroset_viewer::engine::{Backend, Engine, Event};
 use zeroset_viewer::loader::Outcome;
 use zeroset_viewer::session::Session;

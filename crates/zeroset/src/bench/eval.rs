@@ -4,9 +4,9 @@ use fearless_simd::{Level, dispatch};
 use serde::Serialize;
 use std::hint::black_box;
 use std::time::Instant;
-use zeroset_field::eval::{self, BATCH, Point, Workspace};
-use zeroset_field::number::v3;
+use zeroset_eval::{BATCH, Point, Workspace};
 use zeroset_field::program::Program;
+use zeroset_number::v3;
 
 /// What `bench eval` measures. Times are the best of several runs, in nanoseconds a point.
 #[derive(Clone, Debug, Serialize)]
@@ -31,7 +31,7 @@ const BATCHES: usize = 2000;
 /// Measures a program at points spread over the box `[-3, 3]^3`.
 pub(crate) fn eval(program: &Program) -> Eval {
     let level = Level::new();
-    let mut w = Workspace::new(program);
+    let mut w = Workspace::new(program.values(), program.marks());
     let spread = |i: usize, step: f64| (6.0 * (i as f64 * step).fract() - 3.0) as f32;
     for i in 0..BATCH {
         for (k, step) in [0.754_877_67, 0.569_840_29, 0.430_159_7]
@@ -44,16 +44,16 @@ pub(crate) fn eval(program: &Program) -> Eval {
     let points: Vec<_> = (0..BATCH)
         .map(|i| v3(w.points()[0].0[i], w.points()[1].0[i], w.points()[2].0[i]))
         .collect();
-    let mut one = Point::<f32>::new(program);
+    let mut one = Point::<f32>::new(program.values());
     let (mut values, mut gradients, mut scalar) = (f64::MAX, f64::MAX, f64::MAX);
     // in turn, so that a machine that changes its pace changes all three
     for _ in 0..RUNS {
         values = values.min(per_point(BATCHES, || {
-            dispatch!(level, s => eval::values(s, program, &mut w, BATCH));
+            dispatch!(level, s => zeroset_eval::values(s, program.values(), &mut w, BATCH));
             black_box(w.values());
         }));
         gradients = gradients.min(per_point(BATCHES / 4, || {
-            dispatch!(level, s => eval::gradients(s, program, &mut w, BATCH));
+            dispatch!(level, s => zeroset_eval::gradients(s, program.values(), &mut w, BATCH));
             black_box(w.gradients());
         }));
         scalar = scalar.min(per_point(BATCHES / 16, || {

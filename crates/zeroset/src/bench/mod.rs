@@ -11,7 +11,7 @@ use crate::console::Console;
 use crate::failure::{Exit, Failure};
 use crate::json;
 use zeroset_field::program::{Limits, Program};
-use zeroset_scene::load::{Language, Options, load, load_text};
+use zeroset_language::load::{Language, Options, load, load_text};
 use zeroset_scene::render::RenderError;
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Normals, Occlusion, Settings};

@@ -10,11 +10,11 @@ use crate::survey;
 use serde::Serialize;
 use std::collections::{BTreeSet, HashSet};
 use std::fmt::Write;
-use zeroset_field::bounds::{Aabb, Exactness};
+use zeroset_catalogue::bounds::{Aabb, Exactness};
 use zeroset_field::field::{Field, Node};
 use zeroset_field::program::{Limits, Program};
+use zeroset_language::load::{Control, Loaded, Setting};
 use zeroset_output::display;
-use zeroset_scene::load::{Control, Loaded, Setting};
 
 /// What `--json` prints.
 #[derive(Serialize)]

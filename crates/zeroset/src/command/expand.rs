@@ -4,9 +4,9 @@ use crate::args::Expand;
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
 use crate::file::write_text;
+use zeroset_language::json::{expand, to_text};
 use zeroset_output::atomic::probe;
 use zeroset_output::display;
-use zeroset_scene::json::{expand, to_text};
 
 /// Prints a scene as JSON.
 pub(crate) fn run(args: &Expand, console: &Console) -> Result<(), Failure> {

@@ -4,9 +4,9 @@ use crate::args::Export;
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
 use crate::file::write_text;
+use zeroset_language::report::Report;
 use zeroset_output::atomic::probe;
 use zeroset_output::display;
-use zeroset_scene::report::Report;
 use zeroset_shader::export::{ExportError, glsl, wgsl};
 
 /// Prints a scene as one file of shader text.

@@ -21,7 +21,7 @@ pub(crate) fn run(args: &Fields, console: &Console) -> Result<(), Failure> {
         return console.print(&limits());
     }
     let Some(entry) = entries.iter().find(|e| e.name == name) else {
-        let help = match zeroset_scene::report::nearest(name, entries.iter().map(|e| e.name)) {
+        let help = match zeroset_language::report::nearest(name, entries.iter().map(|e| e.name)) {
             Some(near) => format!("did you mean `{near}`?"),
             None => "`zeroset fields` lists all names".to_owned(),
         };

@@ -5,7 +5,7 @@ use crate::console::Console;
 use crate::failure::{Exit, Failure};
 use crate::file::{default_name, write_watched};
 use zeroset::section::Plane;
-use zeroset_field::bounds::Aabb;
+use zeroset_catalogue::bounds::Aabb;
 use zeroset_field::program::{Limits, Program};
 use zeroset_output::atomic::probe;
 use zeroset_output::display;

@@ -14,13 +14,13 @@ use crate::survey;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+use zeroset_language::load::{Loaded, Options};
 use zeroset_output::atomic::probe;
 use zeroset_output::format::png::Depth;
 use zeroset_output::format::{Notes, exr, png};
 use zeroset_output::picture::{Developed, Rows};
 use zeroset_output::view::{View, needed};
 use zeroset_scene::film::Plane;
-use zeroset_scene::load::{Loaded, Options};
 use zeroset_scene::render::Frame;
 use zeroset_scene::scene::Scene;
 

@@ -7,8 +7,8 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
-use zeroset_scene::load::Loaded;
-use zeroset_scene::watch::{PAUSE, Watched};
+use zeroset_language::load::Loaded;
+use zeroset_language::watch::{PAUSE, Watched};
 
 /// A picture that a change outdated is left alone for as long as this, the first time in a row; then twice as long.
 const GRACE: Duration = Duration::from_millis(250);

@@ -1,0 +1,361 @@
+//! Up to [`BATCH`] points at once: one kernel an operation, vectorised over the batch.
+
+use fearless_simd::{Level, Simd, SimdBase};
+use std::marker::PhantomData;
+use zeroset_catalogue::op::*;
+use zeroset_catalogue::tape::{Instruction, Operation, Tape};
+use zeroset_catalogue::{each_change, each_leaf, each_pair, each_warp};
+use zeroset_number::{Args, Data, Dual, Lanes, Real, Vec3, v3};
+
+/// Points an instruction is run over at most. Large enough that the choice of a kernel costs nothing, small enough that
+/// the registers of a program stay in the nearest cache.
+pub const BATCH: usize = 128;
+
+/// One number of every point of a batch.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct Lane(pub [f32; BATCH]);
+
+impl Lane {
+    /// A lane of zeros.
+    pub const ZERO: Lane = Lane([0.0; BATCH]);
+}
+
+/// The registers of tapes for one thread. Made once; an evaluation allocates nothing.
+pub struct Workspace {
+    /// Value lanes; the first three are the points.
+    pub(super) lanes: Vec<Lane>,
+    /// Four lanes a number: value and gradient.
+    duals: Vec<Lane>,
+    pub(super) marks: super::marks::MarkLanes,
+    result: usize,
+    result_dual: usize,
+}
+
+impl Workspace {
+    /// Registers for tapes that take no more of them than these two: one that finds values, one that finds marks.
+    pub fn new(values: Tape<'_>, marks: Tape<'_>) -> Workspace {
+        let (values, marks) = (values.code, marks.code);
+        let lanes = usize::from(values.registers.max(marks.registers));
+        Workspace {
+            lanes: vec![Lane::ZERO; lanes],
+            duals: vec![Lane::ZERO; 4 * usize::from(values.registers)],
+            marks: super::marks::MarkLanes::new(marks),
+            result: usize::from(values.result),
+            result_dual: 4 * usize::from(values.result),
+        }
+    }
+
+    /// The points to evaluate at: x, y and z.
+    #[inline(always)]
+    pub fn points_mut(&mut self) -> &mut [Lane; 3] {
+        (&mut self.lanes[..3])
+            .try_into()
+            .expect("a workspace has three lanes at least")
+    }
+
+    /// The points to evaluate at.
+    #[inline(always)]
+    pub fn points(&self) -> &[Lane; 3] {
+        (&self.lanes[..3])
+            .try_into()
+            .expect("a workspace has three lanes at least")
+    }
+
+    /// What [`values`] found.
+    #[inline(always)]
+    pub fn values(&self) -> &Lane {
+        &self.lanes[self.result]
+    }
+
+    /// Where [`values`] leaves what it finds, for what is made of it.
+    #[inline(always)]
+    pub fn values_mut(&mut self) -> &mut Lane {
+        &mut self.lanes[self.result]
+    }
+
+    /// The values that [`gradients`] found.
+    #[inline(always)]
+    pub fn gradient_values(&self) -> &Lane {
+        &self.duals[self.result_dual]
+    }
+
+    /// What [`gradients`] found at point number `i`: the value and the derivatives along x, y and z.
+    pub fn gradient(&self, i: usize) -> (f32, [f32; 3]) {
+        let gradient = self.gradients().each_ref().map(|lane| lane.0[i]);
+        (self.gradient_values().0[i], gradient)
+    }
+
+    /// What [`gradients`] found: the derivatives along x, y and z.
+    #[inline(always)]
+    pub fn gradients(&self) -> &[Lane; 3] {
+        (&self.duals[self.result_dual + 1..][..3])
+            .try_into()
+            .expect("a result has three derivatives")
+    }
+}
+
+/// Evaluates a tape at the first `n` points of the workspace (at most [`BATCH`]). `n` is rounded up to the width of the SIMD level,
+/// so the points behind the last one must be numbers too.
+#[inline(always)]
+pub fn values<S: Simd>(s: S, tape: Tape<'_>, w: &mut Workspace, n: usize) {
+    w.result = usize::from(tape.code.result);
+    run_values(s.level(), tape, &mut w.lanes, n);
+}
+
+/// As [`values`], with the gradient. The points are those of [`Workspace::points_mut`].
+pub fn gradients<S: Simd>(s: S, tape: Tape<'_>, w: &mut Workspace, n: usize) {
+    for k in 0..3 {
+        w.duals[4 * k] = w.lanes[k];
+        for j in 0..3 {
+            w.duals[4 * k + 1 + j]
+                .0
+                .fill(if j == k { 1.0 } else { 0.0 });
+        }
+    }
+    w.result_dual = 4 * usize::from(tape.code.result);
+    run_gradients(s.level(), tape, &mut w.duals, n);
+}
+
+// Not generic, so that the kernels are compiled once, in this crate.
+#[inline(never)]
+fn run_values(level: Level, tape: Tape<'_>, lanes: &mut [Lane], n: usize) {
+    zeroset_number::at_level!(level, s => run::<_, Lanes<_>>(s, tape, lanes, n))
+}
+
+#[inline(never)]
+fn run_gradients(level: Level, tape: Tape<'_>, lanes: &mut [Lane], n: usize) {
+    zeroset_number::at_level!(@avx2 level, s => run::<_, Dual<Lanes<_>>>(s, tape, lanes, n))
+}
+
+#[inline(always)]
+fn run<S: Simd, N: Slot<S>>(s: S, tape: Tape<'_>, lanes: &mut [Lane], n: usize) {
+    let n = n.next_multiple_of(S::f32s::LEN).min(BATCH);
+    for i in &tape.code.instructions {
+        Kernels::<S, N>::of(i.operation)(s, i, tape.data, lanes, n);
+    }
+}
+
+/// How a number type lies in the registers.
+pub(super) trait Slot<S: Simd>: Real<Scalar = f32, Store = Data> {
+    /// Lanes a number.
+    const WIDTH: usize;
+    /// The numbers from point `i` on.
+    fn load(s: S, lanes: &[Lane], i: usize) -> Self;
+    /// Writes them.
+    fn store(self, lanes: &mut [Lane], i: usize);
+}
+
+#[inline(always)]
+pub(super) fn load<S: Simd>(s: S, lane: &Lane, i: usize) -> Lanes<S> {
+    Lanes(S::f32s::from_slice(s, &lane.0[i..i + S::f32s::LEN]))
+}
+
+#[inline(always)]
+pub(super) fn store<S: Simd>(x: Lanes<S>, lane: &mut Lane, i: usize) {
+    x.0.store_slice(&mut lane.0[i..i + S::f32s::LEN]);
+}
+
+impl<S: Simd> Slot<S> for Lanes<S> {
+    const WIDTH: usize = 1;
+    #[inline(always)]
+    fn load(s: S, lanes: &[Lane], i: usize) -> Self {
+        load(s, &lanes[0], i)
+    }
+    #[inline(always)]
+    fn store(self, lanes: &mut [Lane], i: usize) {
+        store(self, &mut lanes[0], i);
+    }
+}
+
+impl<S: Simd> Slot<S> for Dual<Lanes<S>> {
+    const WIDTH: usize = 4;
+    #[inline(always)]
+    fn load(s: S, lanes: &[Lane], i: usize) -> Self {
+        Dual {
+            v: load(s, &lanes[0], i),
+            d: [
+                load(s, &lanes[1], i),
+                load(s, &lanes[2], i),
+                load(s, &lanes[3], i),
+            ],
+        }
+    }
+    #[inline(always)]
+    fn store(self, lanes: &mut [Lane], i: usize) {
+        store(self.v, &mut lanes[0], i);
+        for k in 0..3 {
+            store(self.d[k], &mut lanes[k + 1], i);
+        }
+    }
+}
+
+#[inline(always)]
+fn load3<S: Simd, N: Slot<S>>(s: S, lanes: &[Lane], i: usize) -> Vec3<N> {
+    let w = N::WIDTH;
+    v3(
+        N::load(s, &lanes[..w], i),
+        N::load(s, &lanes[w..2 * w], i),
+        N::load(s, &lanes[2 * w..3 * w], i),
+    )
+}
+
+pub(super) type Kernel<S> = fn(S, &Instruction, &Data, &mut [Lane], usize);
+
+/// Splits the registers into what an instruction writes and what it reads.
+#[inline(always)]
+fn split<const M: usize>(lanes: &mut [Lane], spans: [(u16, usize); M]) -> [&mut [Lane]; M] {
+    (lanes.get_disjoint_mut(spans.map(|(at, len)| usize::from(at)..usize::from(at) + len)))
+        .expect("the compiler gives operands and results different registers")
+}
+
+#[inline(never)]
+fn leaf<S: Simd, N: Slot<S>, E: Leaf>(
+    s: S,
+    i: &Instruction,
+    data: &Data,
+    lanes: &mut [Lane],
+    n: usize,
+) {
+    let [out, p] = split(
+        lanes,
+        [
+            (i.out * N::WIDTH as u16, N::WIDTH),
+            (i.a * N::WIDTH as u16, 3 * N::WIDTH),
+        ],
+    );
+    let a = Args {
+        store: data,
+        at: i.at as usize,
+    };
+    s.vectorize(
+        #[inline(always)]
+        || {
+            for k in (0..n.min(BATCH)).step_by(S::f32s::LEN) {
+                E::leaf(load3::<S, N>(s, p, k), a).store(out, k);
+            }
+        },
+    );
+}
+
+#[inline(never)]
+fn warp<S: Simd, N: Slot<S>, E: Warp>(
+    s: S,
+    i: &Instruction,
+    data: &Data,
+    lanes: &mut [Lane],
+    n: usize,
+) {
+    let w = N::WIDTH;
+    let [out, p] = split(lanes, [(i.out * w as u16, 3 * w), (i.a * w as u16, 3 * w)]);
+    let a = Args {
+        store: data,
+        at: i.at as usize,
+    };
+    s.vectorize(
+        #[inline(always)]
+        || {
+            for k in (0..n.min(BATCH)).step_by(S::f32s::LEN) {
+                let q = E::warp(load3::<S, N>(s, p, k), a);
+                q.x.store(&mut out[..w], k);
+                q.y.store(&mut out[w..2 * w], k);
+                q.z.store(&mut out[2 * w..3 * w], k);
+            }
+        },
+    );
+}
+
+#[inline(never)]
+fn change<S: Simd, N: Slot<S>, E: Change>(
+    s: S,
+    i: &Instruction,
+    data: &Data,
+    lanes: &mut [Lane],
+    n: usize,
+) {
+    let w = N::WIDTH;
+    let [out, d, p] = split(
+        lanes,
+        [
+            (i.out * w as u16, w),
+            (i.a * w as u16, w),
+            (i.b * w as u16, 3 * w),
+        ],
+    );
+    let a = Args {
+        store: data,
+        at: i.at as usize,
+    };
+    s.vectorize(
+        #[inline(always)]
+        || {
+            for k in (0..n.min(BATCH)).step_by(S::f32s::LEN) {
+                E::change(N::load(s, d, k), load3::<S, N>(s, p, k), a).store(out, k);
+            }
+        },
+    );
+}
+
+#[inline(never)]
+fn pair<S: Simd, N: Slot<S>, E: Pair>(
+    s: S,
+    i: &Instruction,
+    data: &Data,
+    lanes: &mut [Lane],
+    n: usize,
+) {
+    let w = N::WIDTH;
+    let [out, x, y] = split(
+        lanes,
+        [
+            (i.out * w as u16, w),
+            (i.a * w as u16, w),
+            (i.b * w as u16, w),
+        ],
+    );
+    let a = Args {
+        store: data,
+        at: i.at as usize,
+    };
+    s.vectorize(
+        #[inline(always)]
+        || {
+            for k in (0..n.min(BATCH)).step_by(S::f32s::LEN) {
+                E::pair(N::load(s, x, k), N::load(s, y, k), a).store(out, k);
+            }
+        },
+    );
+}
+
+#[inline(never)]
+fn mark<S: Simd, N: Slot<S>>(_s: S, i: &Instruction, _data: &Data, lanes: &mut [Lane], _n: usize) {
+    let w = N::WIDTH;
+    let [out, x] = split(lanes, [(i.out * w as u16, w), (i.a * w as u16, w)]);
+    out.copy_from_slice(x);
+}
+
+/// The kernels of a number type at a SIMD level, by operation.
+pub(super) struct Kernels<S, N>(PhantomData<(S, N)>);
+
+macro_rules! leaves { ($($entry:ty,)*) => { &[$(leaf::<S, N, $entry>),*] }; }
+macro_rules! warps { ($($entry:ty,)*) => { &[$(warp::<S, N, $entry>),*] }; }
+macro_rules! changes { ($($entry:ty,)*) => { &[$(change::<S, N, $entry>),*] }; }
+macro_rules! pairs { ($($entry:ty,)*) => { &[$(pair::<S, N, $entry>),*] }; }
+
+impl<S: Simd, N: Slot<S>> Kernels<S, N> {
+    const LEAVES: &'static [Kernel<S>] = each_leaf!(leaves);
+    const WARPS: &'static [Kernel<S>] = each_warp!(warps);
+    const CHANGES: &'static [Kernel<S>] = each_change!(changes);
+    const PAIRS: &'static [Kernel<S>] = each_pair!(pairs);
+
+    #[inline(always)]
+    pub(super) fn of(operation: Operation) -> Kernel<S> {
+        match operation {
+            Operation::Leaf(code) => Self::LEAVES[usize::from(code)],
+            Operation::Warp(code) => Self::WARPS[usize::from(code)],
+            Operation::Change(code) => Self::CHANGES[usize::from(code)],
+            Operation::Pair(code) => Self::PAIRS[usize::from(code)],
+            Operation::Mark(..) => mark::<S, N>,
+        }
+    }
+}

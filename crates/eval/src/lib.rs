@@ -1,0 +1,9 @@
+//! Evaluators: a tape over SIMD batches, with gradients, with marks, and over one point of any number type.
+
+mod batch;
+mod marks;
+mod point;
+
+pub use batch::{BATCH, Lane, Workspace, gradients, values};
+pub use marks::{Marks, marks};
+pub use point::{Number, Point};

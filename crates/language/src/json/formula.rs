@@ -1,0 +1,134 @@
+//! Formulas in JSON: a list of steps, each a number, a coordinate, or a function of earlier steps.
+
+use super::{Problem, Read, Step as Member, problem};
+use serde_json::{Map, Value, json};
+use zeroset_catalogue::bounds::Aabb;
+use zeroset_field::formula::{Binary, Budget, Formula, Step, Steps, Unary};
+
+/// Names of functions of one step.
+const UNARY: &[(&str, Unary)] = &[
+    ("neg", Unary::Neg),
+    ("abs", Unary::Abs),
+    ("sqrt", Unary::Sqrt),
+    ("square", Unary::Square),
+    ("floor", Unary::Floor),
+    ("sin", Unary::Sin),
+    ("cos", Unary::Cos),
+    ("tan", Unary::Tan),
+    ("asin", Unary::Asin),
+    ("acos", Unary::Acos),
+    ("atan", Unary::Atan),
+    ("exp", Unary::Exp),
+    ("ln", Unary::Ln),
+    ("tanh", Unary::Tanh),
+];
+
+/// Names of functions of two steps.
+const BINARY: &[(&str, Binary)] = &[
+    ("add", Binary::Add),
+    ("sub", Binary::Sub),
+    ("mul", Binary::Mul),
+    ("div", Binary::Div),
+    ("min", Binary::Min),
+    ("max", Binary::Max),
+    ("modulo", Binary::Modulo),
+    ("pow", Binary::Pow),
+    ("atan2", Binary::Atan2),
+    ("hypot", Binary::Hypot),
+];
+
+const COORDINATES: [&str; 3] = ["x", "y", "z"];
+
+fn name_of<T: PartialEq>(table: &[(&'static str, T)], what: &T) -> &'static str {
+    table
+        .iter()
+        .find(|(_, t)| t == what)
+        .map_or("", |(name, _)| name)
+}
+
+/// A formula with its box and its slope.
+pub(super) fn write(formula: &Formula) -> Map<String, Value> {
+    let steps = formula.steps().iter().map(|step| match step {
+        Step::Constant(x) => json!(x),
+        Step::Coordinate(k) => json!(COORDINATES.get(usize::from(*k))),
+        Step::Unary(f, a) => json!([name_of(UNARY, f), a]),
+        Step::Binary(f, a, b) => json!([name_of(BINARY, f), a, b]),
+    });
+    let mut body = Map::new();
+    body.insert("steps".into(), steps.collect());
+    body.insert(
+        "bounds".into(),
+        json!([formula.bounds().min, formula.bounds().max]),
+    );
+    body.insert("slope".into(), json!(formula.slope()));
+    body.insert("proven".into(), json!(formula.is_proven()));
+    body
+}
+
+/// A formula from its steps, its box, and its slope if that is stated rather than proven.
+pub(super) fn read(body: &Map<String, Value>) -> Read<Formula> {
+    let steps = body.get("steps").and_then(Value::as_array);
+    let steps = steps.ok_or_else(|| problem("a formula needs `steps`, a list"))?;
+    let each = |(i, v)| step(v).map_err(|p| p.within(Member::Index(i)).at("steps"));
+    let steps = steps
+        .iter()
+        .enumerate()
+        .map(each)
+        .collect::<Read<Vec<Step>>>()?;
+    let steps = Steps::new(steps).map_err(|e| problem(e.to_string()).at("steps"))?;
+    let corner = |v: Option<&Value>| {
+        let items = v
+            .and_then(Value::as_array)
+            .filter(|items| items.len() == 3)?;
+        let mut out = [0.0; 3];
+        for (x, item) in out.iter_mut().zip(items) {
+            *x = item.as_f64()?;
+        }
+        Some(out)
+    };
+    let bounds = body.get("bounds").and_then(Value::as_array);
+    let corners = bounds.and_then(|b| Some((corner(b.first())?, corner(b.get(1))?)));
+    let (min, max) =
+        corners.ok_or_else(|| problem("a formula needs `bounds`, two corners of three numbers"))?;
+    let bounds = Aabb::new(min, max);
+    let formula = match (
+        body.get("proven").and_then(Value::as_bool),
+        body.get("slope").and_then(Value::as_f64),
+    ) {
+        (Some(false), Some(slope)) => Formula::stated(steps, bounds, slope),
+        _ => Formula::prove(steps, bounds, &Budget::default()),
+    };
+    formula.map_err(|e| problem(e.to_string()))
+}
+
+fn step(value: &Value) -> Read<Step> {
+    let unknown = || -> Box<Problem> {
+        problem(
+            "a step is a number, \"x\", \"y\", \"z\", or a function of earlier steps such as [\"sin\", 0] or [\"add\", 0, 1]",
+        )
+    };
+    if let Some(x) = value.as_f64() {
+        return Ok(Step::Constant(x));
+    }
+    if let Some(name) = value.as_str() {
+        let k = COORDINATES
+            .iter()
+            .position(|c| *c == name)
+            .ok_or_else(unknown)?;
+        return Ok(Step::Coordinate(k as u8));
+    }
+    let items = value.as_array().ok_or_else(unknown)?;
+    let operand = |v: &Value| v.as_u64().and_then(|n| u32::try_from(n).ok());
+    let name = items.first().and_then(Value::as_str).ok_or_else(unknown)?;
+    let step = match items[1..] {
+        [ref a] => {
+            (UNARY.iter().find(|f| f.0 == name)).and_then(|f| Some(Step::Unary(f.1, operand(a)?)))
+        }
+        [ref a, ref b] => {
+            let found = BINARY.iter().find(|f| f.0 == name);
+            found.and_then(|f| Some(Step::Binary(f.1, operand(a)?, operand(b)?)))
+        }
+        _ => None,
+    };
+    step.ok_or_else(unknown)
+}

@@ -1,0 +1,404 @@
+//! From a scene to JSON.
+
+use super::{NAME, VERSION, angle_name, valid};
+use crate::limits::Limits;
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+use std::collections::HashMap;
+use zeroset_catalogue::{Info, Kind, Unit};
+use zeroset_field::field::{Field, Node, Paint};
+use zeroset_field::placement::Placement;
+use zeroset_scene::camera::{Camera, Lens};
+use zeroset_scene::scene::Scene;
+
+/// Levels of a field that are written into each other; what lies deeper becomes a part of its own.
+const DEPTH: u32 = 12;
+
+/// Why a scene cannot be written as JSON. Scenes that were loaded can.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("this scene cannot be written as JSON: {reason}")]
+pub struct ExpandError {
+    /// Which number it is, and what is allowed.
+    pub reason: String,
+}
+
+impl ExpandError {
+    fn new(reason: impl Into<String>) -> ExpandError {
+        let reason = reason.into();
+        ExpandError { reason }
+    }
+}
+
+/// The scene as JSON: everything that it is, every number exact.
+///
+/// # Errors
+/// What could not be read back: numbers that are not finite or out of range, materials that are not there.
+pub fn expand(scene: &Scene) -> Result<Value, ExpandError> {
+    valid::scene(scene, &Limits::NONE).map_err(|p| ExpandError::new(p.message()))?;
+    let mut writer = Writer {
+        materials: scene.materials.len(),
+        ..Writer::default()
+    };
+    scene
+        .objects
+        .iter()
+        .for_each(|object| writer.count(&object.field));
+    let objects: Vec<Value> = (scene.objects.iter())
+        .map(|object| {
+            let mut out = Map::new();
+            out.insert("name".into(), json!(object.name));
+            out.insert("field".into(), writer.field(&object.field, 0));
+            out.insert("material".into(), json!(object.material));
+            if let Some(occlusion) = &object.occlusion {
+                out.insert("ao".into(), plain(occlusion));
+            }
+            Value::Object(out)
+        })
+        .collect();
+    let mut out = Map::new();
+    out.insert(NAME.into(), json!(VERSION));
+    out.insert("name".into(), json!(scene.name));
+    if !writer.parts.is_empty() {
+        out.insert("parts".into(), Value::Array(writer.parts));
+    }
+    out.insert("objects".into(), Value::Array(objects));
+    out.insert("materials".into(), plain(&scene.materials));
+    out.insert("lights".into(), plain(&scene.lights));
+    out.insert("sky".into(), plain(&scene.sky));
+    out.insert("camera".into(), camera(&scene.camera));
+    out.insert("settings".into(), plain(&scene.settings));
+    let out = Value::Object(out);
+    if let Some(reason) = writer.refused {
+        return Err(ExpandError::new(reason));
+    }
+    // nothing in a scene is written as null but a number that is not finite
+    match null(&out) {
+        Some(path) => Err(ExpandError::new(format!("{path} is not a finite number"))),
+        None => Ok(out),
+    }
+}
+
+/// Where there is a null in a value.
+fn null(value: &Value) -> Option<String> {
+    match value {
+        Value::Null => Some(String::new()),
+        Value::Array(items) => {
+            (items.iter().enumerate()).find_map(|(i, v)| Some(format!("[{i}]{}", null(v)?)))
+        }
+        Value::Object(map) => (map.iter()).find_map(|(key, v)| {
+            let inner = null(v)?;
+            let dot = if inner.is_empty() || inner.starts_with('[') {
+                ""
+            } else {
+                "."
+            };
+            Some(format!("{key}{dot}{inner}"))
+        }),
+        _ => None,
+    }
+}
+
+/// Data without fields. What cannot be written becomes null, which is found.
+fn plain(data: &impl Serialize) -> Value {
+    serde_json::to_value(data).unwrap_or_default()
+}
+
+fn camera(camera: &Camera) -> Value {
+    let mut out = Map::new();
+    out.insert("eye".into(), plain(&camera.eye));
+    let axes = [camera.axes.x_axis, camera.axes.y_axis, camera.axes.z_axis];
+    out.insert("axes".into(), plain(&axes));
+    match camera.lens {
+        Lens::Pinhole { fov } => out.insert("fov".into(), json!(degrees_of(fov))),
+        Lens::Orthographic { height } => out.insert("height".into(), json!(height)),
+    };
+    out.insert("near".into(), json!(camera.near));
+    out.insert("far".into(), json!(camera.far));
+    Value::Object(out)
+}
+
+/// The shortest degrees that become exactly these radians of single precision.
+pub(super) fn degrees_of(radians: f32) -> f64 {
+    let near = f64::from(radians).to_degrees();
+    let rounded = (0..15).map(|digits| {
+        let text = format!("{near:.digits$}");
+        text.parse::<f64>().unwrap_or(near)
+    });
+    let mut exact = rounded.filter(|d| d.to_radians() as f32 == radians);
+    exact.next().unwrap_or(near)
+}
+
+/// The degrees that become exactly these radians, if there are any: near the nominal ones, the shortest.
+pub(super) fn exact_degrees(radians: f64) -> Option<f64> {
+    let near = radians.to_degrees();
+    let (mut low, mut high, mut best) = (near, near, None::<f64>);
+    let mut consider = |d: f64| {
+        let shorter = |b: f64| format!("{d}").len() < format!("{b}").len();
+        if d.to_radians().to_bits() == radians.to_bits() && best.is_none_or(shorter) {
+            best = Some(d);
+        }
+    };
+    consider(near);
+    for _ in 0..4 {
+        (low, high) = (low.next_down(), high.next_up());
+        consider(low);
+        consider(high);
+    }
+    best
+}
+
+#[derive(Default)]
+struct Writer {
+    /// How often each node is used, and how deep the tree below it is.
+    uses: HashMap<usize, u32>,
+    /// Parts written already, by node.
+    places: HashMap<usize, usize>,
+    parts: Vec<Value>,
+    /// Number of materials.
+    materials: usize,
+    /// The first thing that could not be read back.
+    refused: Option<String>,
+}
+
+impl Writer {
+    /// Counts the uses of every node below.
+    fn count(&mut self, field: &Field) {
+        let uses = self.uses.entry(field.key()).or_default();
+        *uses += 1;
+        if *uses == 1 {
+            field.children().iter().for_each(|c| self.count(c));
+        }
+    }
+
+    /// A field, `level` levels inside of the part or object that holds it.
+    fn field(&mut self, field: &Field, level: u32) -> Value {
+        let key = field.key();
+        if let Some(place) = self.places.get(&key) {
+            return json!({ "part": place });
+        }
+        let shared = self.uses.get(&key).is_some_and(|n| *n > 1);
+        if shared || level >= DEPTH {
+            let value = self.node(field, 0);
+            self.places.insert(key, self.parts.len());
+            self.parts.push(value);
+            return json!({ "part": self.parts.len() - 1 });
+        }
+        self.node(field, level)
+    }
+
+    fn node(&mut self, field: &Field, level: u32) -> Value {
+        if let Node::Paint {
+            paint: Paint::Material(number),
+            ..
+        } = field.node()
+            && usize::from(*number) >= self.materials
+        {
+            let reason = format!("a part has material {number}, which is not there");
+            self.refused.get_or_insert(reason);
+        }
+        let mut of = |shape: &Field| self.field(shape, level + 1);
+        let (name, body) = match field.node() {
+            Node::Primitive { entry, params } => (entry.info.name, parameters(&entry.info, params)),
+            Node::Map {
+                entry,
+                params,
+                shape,
+            } => {
+                let mut body = parameters(&entry.info, params);
+                body.insert("of".into(), of(shape));
+                (entry.info.name, body)
+            }
+            Node::Modify {
+                entry,
+                params,
+                shape,
+            } => {
+                let mut body = parameters(&entry.info, params);
+                body.insert("of".into(), of(shape));
+                (entry.info.name, body)
+            }
+            Node::Join {
+                entry,
+                params,
+                shapes,
+            } => {
+                let mut body = parameters(&entry.info, params);
+                body.insert("of".into(), shapes.iter().map(of).collect());
+                (entry.info.name, body)
+            }
+            Node::Place { placement, shape } => ("place", place(placement, of(shape))),
+            Node::Repeat { repetition, shape } => {
+                let mut body = Map::new();
+                body.insert("spacing".into(), json!(repetition.spacing));
+                body.insert("count".into(), json!(repetition.count));
+                body.insert("vary".into(), json!(repetition.vary));
+                body.insert("seed".into(), json!(repetition.seed));
+                body.insert("of".into(), of(shape));
+                ("repeat", body)
+            }
+            Node::Polar { polar, shape } => {
+                let mut body = Map::new();
+                body.insert("count".into(), json!(polar.count));
+                body.insert("of".into(), of(shape));
+                ("polar", body)
+            }
+            Node::Paint { paint, shape } => {
+                let mut body = Map::new();
+                match paint {
+                    Paint::Material(number) => body.insert("material".into(), json!(number)),
+                    Paint::Object(number) => body.insert("object".into(), json!(number)),
+                };
+                body.insert("of".into(), of(shape));
+                ("paint", body)
+            }
+            Node::Formula(formula) => ("formula", super::formula::write(formula)),
+        };
+        json!({ name: body })
+    }
+}
+
+fn place(placement: &Placement, of: Value) -> Map<String, Value> {
+    let mut body = Map::new();
+    body.insert("offset".into(), json!(placement.offset));
+    if placement.turns {
+        body.insert("rotation".into(), json!(placement.rotation));
+    }
+    if placement.scales {
+        body.insert("scale".into(), json!(placement.scale));
+    }
+    body.insert("of".into(), of);
+    body
+}
+
+/// The parameter array of a catalogue entry by names.
+fn parameters(info: &Info, params: &[f64]) -> Map<String, Value> {
+    let (mut out, mut rest) = (Map::new(), params);
+    for param in info.params {
+        let mut take = |n: usize| {
+            let (head, tail) = rest.split_at(n.min(rest.len()));
+            rest = tail;
+            head
+        };
+        let width = match param.kind {
+            Kind::List(width) => width,
+            kind => kind.len(),
+        };
+        let items = match param.kind {
+            Kind::List(width) => {
+                let count = take(1).first().map_or(0, |n| *n as usize);
+                take(count * width)
+            }
+            _ => take(width),
+        };
+        let degrees = super::is_angle(param.unit)
+            .then(|| {
+                items
+                    .iter()
+                    .map(|x| exact_degrees(*x))
+                    .collect::<Option<Vec<f64>>>()
+            })
+            .flatten();
+        let name = match degrees {
+            None if super::is_angle(param.unit) => angle_name(param.name),
+            _ => param.name.to_string(),
+        };
+        let numbers = degrees.as_deref().unwrap_or(items);
+        let number = |x: &f64| {
+            if param.unit == Unit::Count {
+                json!(*x as i64)
+            } else {
+                json!(x)
+            }
+        };
+        let value = match param.kind {
+            Kind::Number => numbers.first().map_or(Value::Null, number),
+            Kind::Vec2 | Kind::Vec3 | Kind::List(1) => numbers.iter().map(number).collect(),
+            Kind::List(width) => numbers
+                .chunks(width)
+                .map(|c| c.iter().map(number).collect::<Value>())
+                .collect(),
+        };
+        out.insert(name, value);
+    }
+    out
+}
+
+/// JSON as text for people: what fits into a line stands in a line.
+pub fn to_text(value: &Value) -> String {
+    let mut out = String::new();
+    write_text(value, 0, &mut out);
+    out.push('\n');
+    out
+}
+
+const LINE: usize = 110;
+
+fn write_text(value: &Value, indent: usize, out: &mut String) {
+    let flat = |value: &Value| spaced(value);
+    let fits = |text: &str| indent + text.len() <= LINE;
+    let (open, close, items): (char, char, Vec<(String, &Value)>) = match value {
+        Value::Array(items) => ('[', ']', items.iter().map(|v| (String::new(), v)).collect()),
+        Value::Object(map) => {
+            let named = map
+                .iter()
+                .map(|(k, v)| (format!("{}: ", Value::from(k.as_str())), v));
+            ('{', '}', named.collect())
+        }
+        other => return out.push_str(&other.to_string()),
+    };
+    // text of a large value is not made only to find that it does not fit
+    if size(value, LINE) <= LINE {
+        let text = flat(value);
+        if fits(&text) {
+            return out.push_str(&text);
+        }
+    }
+    out.push(open);
+    let count = items.len();
+    for (i, (name, item)) in items.into_iter().enumerate() {
+        out.push('\n');
+        out.push_str(&" ".repeat(indent + 2));
+        out.push_str(&name);
+        write_text(item, indent + 2, out);
+        if i + 1 < count {
+            out.push(',');
+        }
+    }
+    out.push('\n');
+    out.push_str(&" ".repeat(indent));
+    out.push(close);
+}
+
+/// A lower bound of a value's length as text, exact enough beyond `limit`.
+fn size(value: &Value, limit: usize) -> usize {
+    let mut total = 2;
+    let mut add = |v: &Value, extra: usize| {
+        if total <= limit {
+            total += size(v, limit - total.min(limit)) + extra;
+        }
+    };
+    match value {
+        Value::Array(items) => items.iter().for_each(|v| add(v, 1)),
+        Value::Object(map) => map.iter().for_each(|(k, v)| add(v, k.len() + 3)),
+        Value::String(s) => total += s.len(),
+        _ => total = 1,
+    }
+    total
+}
+
+/// A value on one line, with spaces after commas and colons.
+fn spaced(value: &Value) -> String {
+    match value {
+        Value::Array(items) => format!(
+            "[{}]",
+            items.iter().map(spaced).collect::<Vec<_>>().join(", ")
+        ),
+        Value::Object(map) => {
+            let pairs = map
+                .iter()
+                .map(|(k, v)| format!("{}: {}", Value::from(k.as_str()), spaced(v)));
+            format!("{{{}}}", pairs.collect::<Vec<_>>().join(", "))
+        }
+        other => other.to_string(),
+    }
+}

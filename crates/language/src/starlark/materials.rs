@@ -1,0 +1,315 @@
+//! Colours, patterns and materials.
+
+use super::mistake::{Run, mistake};
+use super::native::{Call, Given, Native, Slot, slot, spoken};
+use super::value::{Thing, Value};
+use crate::draft::unit;
+use crate::images;
+use glam::{DVec3, Vec3};
+use zeroset_catalogue::{LARGE, SMALL};
+use zeroset_scene::colour;
+use zeroset_scene::material::{Material, Pattern};
+
+macro_rules! function {
+    ($group:literal, $name:literal, $doc:literal, [$($slot:expr),*], $run:expr) => {
+        Native { name: $name, doc: $doc, group: $group, params: { const S: &[Slot] = &[$($slot),*]; S }, rest: false, run: $run }
+    };
+}
+
+const A: Slot = slot("a", "\"#e8e8e8\"", "The one colour.");
+const B: Slot = slot("b", "\"#404040\"", "The other colour.");
+const SIZE: Slot = slot("size", "1", "Size, scene units.");
+
+/// The functions.
+pub(crate) const ALL: &[Native] = &[
+    function!(
+        "Materials",
+        "material",
+        "What a surface looks like.",
+        [
+            slot("color", "\"#cbc8c4\"", "A colour or a pattern."),
+            slot("metallic", "0", "0 plastic or stone, 1 metal."),
+            slot("roughness", "0.5", "0 mirror, 1 chalk."),
+            slot("specular", "0.25", "Strength of the highlight, 0 to 10."),
+            slot(
+                "shininess",
+                "40",
+                "Sharpness of the highlight, 1 to 10,000."
+            ),
+            slot("emission", "\"black\"", "The colour that it glows in."),
+            slot("strength", "1", "How strongly it glows.")
+        ],
+        material
+    ),
+    function!(
+        "Materials",
+        "rgb",
+        "A colour from red, green and blue, each 0 to 1.",
+        [
+            slot("red", "", "0 to 1."),
+            slot("green", "", "0 to 1."),
+            slot("blue", "", "0 to 1.")
+        ],
+        |c| {
+            let [r, g, b] = three(c, ["red", "green", "blue"], [1.0; 3])?;
+            tuple(c, [r, g, b])
+        }
+    ),
+    function!(
+        "Materials",
+        "hsv",
+        "A colour from hue, saturation and value.",
+        [
+            slot(
+                "hue",
+                "",
+                "Degrees: 0 red, 120 green, 240 blue; any number."
+            ),
+            slot("saturation", "1", "0 grey to 1 pure."),
+            slot("value", "1", "0 black to 1 bright.")
+        ],
+        |c| {
+            let hue = c.need("hue")?;
+            let hue = c.number("hue", hue)?;
+            let (s, v) = (
+                c.number_or("saturation", 1.0, 0.0, 1.0)?,
+                c.number_or("value", 1.0, 0.0, 1.0)?,
+            );
+            tuple(c, colour::hsv(hue, s, v))
+        }
+    ),
+    function!(
+        "Patterns",
+        "checker",
+        "Cubes of two colours.",
+        [A, B, SIZE],
+        |c| {
+            let (colours, size) = (pair(c)?, size(c)?);
+            pattern(c, Pattern::Checker { colours, size })
+        }
+    ),
+    function!(
+        "Patterns",
+        "stripes",
+        "Bands of two colours across a direction.",
+        [A, B, slot("direction", "\"y\"", "Across which way."), SIZE],
+        |c| {
+            let (colours, size) = (pair(c)?, size(c)?);
+            let direction = c
+                .get("direction")
+                .map_or(Ok([0.0, 1.0, 0.0]), |g| c.direction("direction", g))?;
+            let direction = unit(direction).as_vec3();
+            pattern(
+                c,
+                Pattern::Stripes {
+                    colours,
+                    direction,
+                    size,
+                },
+            )
+        }
+    ),
+    function!(
+        "Patterns",
+        "noise",
+        "Clouds between two colours.",
+        [
+            A,
+            B,
+            SIZE,
+            slot("octaves", "4", "How fine the finest detail is, 1 to 8.")
+        ],
+        |c| {
+            let (colours, size, octaves) = (pair(c)?, size(c)?, c.count_or("octaves", 4, 1, 8)?);
+            pattern(
+                c,
+                Pattern::Noise {
+                    colours,
+                    size,
+                    octaves,
+                },
+            )
+        }
+    ),
+    function!(
+        "Patterns",
+        "gradient",
+        "From one colour to another between two points.",
+        [
+            A,
+            B,
+            slot("start", "(0, -1, 0)", "Where the first colour is."),
+            slot("end", "(0, 1, 0)", "Where the second is.")
+        ],
+        |c| {
+            let colours = pair(c)?;
+            let start = c
+                .get("start")
+                .map_or(Ok([0.0, -1.0, 0.0]), |g| c.numbers("start", g))?;
+            let end = c
+                .get("end")
+                .map_or(Ok([0.0, 1.0, 0.0]), |g| c.numbers("end", g))?;
+            if start == end {
+                return Err(mistake("`start` and `end` of gradient() must differ"));
+            }
+            pattern(
+                c,
+                Pattern::Gradient {
+                    colours,
+                    from: DVec3::from(start).as_vec3(),
+                    to: DVec3::from(end).as_vec3(),
+                },
+            )
+        }
+    ),
+    function!(
+        "Patterns",
+        "triplanar",
+        "An image projected along the three axes.",
+        [
+            slot("image", "", "A PNG or JPEG file in the scene's folder."),
+            slot("size", "1", "Side of a copy of the image, scene units."),
+            slot(
+                "sharpness",
+                "4",
+                "How sharply the three projections are told apart: 1 soft, 8 sharp."
+            )
+        ],
+        |c| {
+            let given = c.need("image")?;
+            let name = c.text("image", given)?;
+            let (size, sharpness) = (size(c)?, c.number_or("sharpness", 4.0, 1.0, 64.0)? as f32);
+            let limits = c.machine.limits;
+            let image = images::load(&mut c.machine.draft.files, &name, &limits)
+                .map_err(|m| mistake(m).at(given.place))?;
+            pattern(
+                c,
+                Pattern::Triplanar {
+                    image,
+                    size,
+                    sharpness,
+                },
+            )
+        }
+    ),
+    function!(
+        "Patterns",
+        "orbit",
+        "Colours by the orbit of a fractal: by how near it came to each trap.",
+        [
+            slot("center", "\"#f2e8cf\"", "Colour near the origin."),
+            slot("x", "\"#bc4749\"", "Colour near the plane x = 0."),
+            slot("y", "\"#6a994e\"", "Colour near the plane y = 0."),
+            slot("z", "\"#386fa4\"", "Colour near the plane z = 0.")
+        ],
+        |c| {
+            let colours = [
+                c.colour_or("center", "#f2e8cf")?,
+                c.colour_or("x", "#bc4749")?,
+                c.colour_or("y", "#6a994e")?,
+                c.colour_or("z", "#386fa4")?,
+            ];
+            pattern(c, Pattern::Orbit { colours })
+        }
+    ),
+];
+
+impl Call<'_, '_> {
+    /// A colour, linear.
+    pub(crate) fn colour(&self, param: &str, given: Given) -> Run<Vec3> {
+        Ok(colour::linear(self.srgb(param, given)?))
+    }
+
+    /// A colour, sRGB, 0 to 1.
+    pub(crate) fn srgb(&self, param: &str, given: Given) -> Run<[f64; 3]> {
+        if let Value::Text(i) = given.value {
+            let text = self.machine.store.text(i).clone();
+            return crate::colour::parse(&text).map_err(|reason| {
+                mistake(format!("{} is no colour: \"{text}\", {reason}", self.called(param)))
+                    .help("write \"#e8b04a\", \"#888\", a CSS name such as \"tomato\", hsv(30, 0.7, 0.9) or (0.9, 0.7, 0.3)")
+                    .at(given.place)
+            });
+        }
+        if !matches!(given.value, Value::List(_) | Value::Tuple(_)) {
+            return Err(self.unfit(
+                param,
+                "a colour such as \"#e8b04a\" or (0.9, 0.7, 0.3)",
+                given,
+            ));
+        }
+        let numbers: [f64; 3] = self.numbers(param, given)?;
+        if let Some(x) = numbers.iter().find(|x| !(0.0..=1.0).contains(*x)) {
+            let message = format!(
+                "{} has {}, allowed is 0 to 1",
+                self.called(param),
+                spoken(*x)
+            );
+            return Err(mistake(message)
+                .help("divide numbers from 0 to 255 by 255")
+                .at(given.place));
+        }
+        Ok(numbers)
+    }
+
+    /// A colour, linear, or a default.
+    pub(crate) fn colour_or(&self, param: &str, default: &str) -> Run<Vec3> {
+        match self.get(param) {
+            Some(given) => self.colour(param, given),
+            None => crate::colour::parse(default)
+                .map(colour::linear)
+                .map_err(mistake),
+        }
+    }
+}
+
+fn material(c: &mut Call<'_, '_>) -> Run<Value> {
+    let default = Material::default();
+    let pattern = match c.get("color") {
+        None => default.pattern,
+        Some(given) => match given.value {
+            Value::Thing(i) => match c.machine.store.thing(i) {
+                Thing::Pattern(pattern) => pattern.clone(),
+                _ => return Err(c.unfit("color", "a colour or a pattern", given)),
+            },
+            _ => Pattern::Solid {
+                colour: c.colour("color", given)?,
+            },
+        },
+    };
+    let strength = c.number_or("strength", 1.0, 0.0, 1e6)? as f32;
+    let material = Material {
+        pattern,
+        specular: c.number_or("specular", f64::from(default.specular), 0.0, 10.0)? as f32,
+        shininess: c.number_or("shininess", f64::from(default.shininess), 1.0, 1e4)? as f32,
+        metallic: c.number_or("metallic", f64::from(default.metallic), 0.0, 1.0)? as f32,
+        roughness: c.number_or("roughness", f64::from(default.roughness), 0.0, 1.0)? as f32,
+        emission: c.colour_or("emission", "black")? * strength,
+    };
+    c.machine.thing(Thing::Material(material.into()))
+}
+
+fn pattern(c: &mut Call<'_, '_>, pattern: Pattern) -> Run<Value> {
+    c.machine.thing(Thing::Pattern(pattern))
+}
+
+fn pair(c: &Call<'_, '_>) -> Run<[Vec3; 2]> {
+    Ok([c.colour_or("a", "#e8e8e8")?, c.colour_or("b", "#404040")?])
+}
+
+fn size(c: &Call<'_, '_>) -> Run<f32> {
+    Ok(c.number_or("size", 1.0, SMALL, LARGE)? as f32)
+}
+
+fn three(c: &Call<'_, '_>, names: [&str; 3], max: [f64; 3]) -> Run<[f64; 3]> {
+    let mut out = [0.0; 3];
+    for k in 0..3 {
+        let given = c.need(names[k])?;
+        out[k] = c.ranged(names[k], given, 0.0, max[k])?;
+    }
+    Ok(out)
+}
+
+fn tuple(c: &mut Call<'_, '_>, numbers: [f64; 3]) -> Run<Value> {
+    c.machine.grow_items(3)?;
+    c.machine.tuple(numbers.map(Value::Float).to_vec())
+}

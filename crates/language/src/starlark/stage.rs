@@ -1,0 +1,382 @@
+//! What is on stage: objects, the camera, lights, the sky.
+
+use super::mistake::{Run, mistake};
+use super::native::{Call, Given, Native, Slot, slot};
+use super::value::{Thing, Value};
+use crate::draft::{FOV, LIGHTS, View, unit};
+use crate::framing::axes_of;
+use glam::{DMat3, DQuat, DVec3, EulerRot, Vec3};
+use zeroset_catalogue::{Dimension, LARGE, SMALL};
+use zeroset_scene::light::{Light, Sky, Source};
+use zeroset_scene::material::Material;
+use zeroset_scene::scene::Object;
+use zeroset_scene::settings::{Occlusion, Shadow};
+
+const GROUP: &str = "Stage";
+
+macro_rules! function {
+    ($name:literal, $doc:literal, [$($slot:expr),*], $run:expr) => {
+        Native { name: $name, doc: $doc, group: GROUP, params: { const S: &[Slot] = &[$($slot),*]; S }, rest: false, run: $run }
+    };
+}
+
+const COLOR: Slot = slot("color", "\"white\"", "Its colour.");
+const STRENGTH: Slot = slot("strength", "1", "How strong it is.");
+const SHADOW: Slot = slot(
+    "shadow",
+    "soft_closest(16)",
+    "hard(), soft(k), soft_closest(k) or none().",
+);
+
+/// The functions.
+pub(crate) const ALL: &[Native] = &[
+    function!(
+        "show",
+        "Puts an object on stage: a field with a material.",
+        [
+            slot("field", "", "What is shown, a solid."),
+            slot(
+                "material",
+                "material()",
+                "A material, a pattern or a colour."
+            ),
+            slot("name", "its number", "What it is called."),
+            slot(
+                "ao",
+                "that of render()",
+                "An ambient occlusion method of its own."
+            )
+        ],
+        show
+    ),
+    function!(
+        "camera",
+        "Where it is seen from. What is left out follows from what is to be seen.",
+        [
+            slot("eye", "framed", "Where the camera stands, (x, y, z)."),
+            slot("target", "the middle", "Where it looks."),
+            slot("up", "\"y\"", "Which way is up."),
+            slot("fov", "40", "Height of what it sees, degrees, 1 to 170."),
+            slot(
+                "direction",
+                "(-0.62, -0.48, -1)",
+                "Which way it looks, in place of an eye."
+            ),
+            slot(
+                "turn",
+                "None",
+                "Its orientation: degrees about x, y, z, or a quaternion (x, y, z, w)."
+            ),
+            slot(
+                "lens",
+                "perspective",
+                "orthographic(height) for parallel rays."
+            ),
+            slot("near", "0", "Where rays begin, scene units."),
+            slot("far", "1000 or more", "Where rays end, scene units.")
+        ],
+        camera
+    ),
+    function!(
+        "orthographic",
+        "A lens with parallel rays.",
+        [slot("height", "", "Height of what it sees, scene units.")],
+        |c| {
+            let given = c.need("height")?;
+            let height = c.ranged("height", given, SMALL, LARGE)?;
+            c.machine.thing(Thing::Orthographic(height))
+        }
+    ),
+    function!(
+        "sun",
+        "Light from far away.",
+        [
+            slot("direction", "(0.6, -1, -0.5)", "The way the light travels."),
+            COLOR,
+            STRENGTH,
+            SHADOW
+        ],
+        |c| {
+            let direction = c
+                .get("direction")
+                .map_or(Ok([0.6, -1.0, -0.5]), |g| c.direction("direction", g))?;
+            let direction = unit(direction).as_vec3();
+            light(c, Source::Directional { direction })
+        }
+    ),
+    function!(
+        "point_light",
+        "Light from a point; it falls off with the square of the distance.",
+        [
+            slot("position", "", "Where, (x, y, z)."),
+            COLOR,
+            slot("strength", "10", "How strong it is at a distance of 1."),
+            SHADOW
+        ],
+        |c| {
+            let given = c.need("position")?;
+            let position = c.point("position", given)?.as_vec3();
+            light(c, Source::Point { position })
+        }
+    ),
+    function!(
+        "sky",
+        "What is behind everything, and lights it from everywhere.",
+        [
+            slot("top", "a clear blue", "Colour straight up."),
+            slot("horizon", "between top and white", "Colour at the horizon."),
+            slot("bottom", "a dark grey", "Colour straight down."),
+            slot(
+                "ambient",
+                "0.45",
+                "How much of its light reaches a surface, 0 to 10."
+            ),
+            slot("color", "None", "One colour for all three.")
+        ],
+        sky
+    ),
+];
+
+impl Call<'_, '_> {
+    /// A point of space.
+    pub(crate) fn point(&self, param: &str, given: Given) -> Run<DVec3> {
+        let p: [f64; 3] = self.numbers(param, given)?;
+        for x in p {
+            self.ranged(
+                param,
+                Given {
+                    value: Value::Float(x),
+                    ..given
+                },
+                -LARGE,
+                LARGE,
+            )?;
+        }
+        Ok(DVec3::from(p))
+    }
+
+    /// An occlusion method.
+    pub(crate) fn occlusion(&self, param: &str, given: Given) -> Run<Occlusion> {
+        if let Value::Thing(i) = given.value {
+            match self.machine.store.thing(i) {
+                Thing::Occlusion(occlusion) => return Ok(*occlusion),
+                Thing::Nothing => return Ok(Occlusion::None),
+                _ => {}
+            }
+        }
+        let wanted = "an occlusion method such as cones() or quilez(steps = 5)";
+        Err(self.unfit(param, wanted, given))
+    }
+
+    /// States something that a scene has once.
+    pub(crate) fn once(&mut self, what: &'static str) -> Run<()> {
+        let Some(first) = self.machine.draft.stated.insert(what, self.place) else {
+            return Ok(());
+        };
+        let source = self.machine.draft.sources.get(first.file as usize);
+        let whereabouts = source.map_or(String::new(), |s| {
+            let (line, _) = s.position(first.start as usize);
+            format!(" in {} at line {line}", s.name)
+        });
+        Err(mistake(format!("{what} is stated already{whereabouts}"))
+            .help("leave one of the two out"))
+    }
+}
+
+fn show(c: &mut Call<'_, '_>) -> Run<Value> {
+    let given = c.need("field")?;
+    let field = c.field("field", given)?;
+    if field.facts().dimension == Dimension::Two {
+        let m = mistake("a plane shape has no surface to show").at(given.place);
+        return Err(m.help("make a solid of it: show(shape.extrude(1))"));
+    }
+    if field.facts().nodes > c.machine.limits.nodes {
+        let message = format!(
+            "this field has {} nodes (a shape used twice counts twice), at most {} are allowed",
+            field.facts().nodes,
+            c.machine.limits.nodes
+        );
+        let help = "use .repeat(...) or .polar(...) for many copies, or raise the limit `nodes`";
+        return Err(mistake(message).help(help).at(given.place));
+    }
+    let limit = c.machine.limits.objects.min(u64::from(u16::MAX));
+    let count = c.machine.draft.objects.len();
+    if count as u64 >= limit {
+        let help = "join shapes with union([...]) and show them as one";
+        return Err(mistake(format!("more than {limit} objects")).help(help));
+    }
+    let material = match c.get("material") {
+        Some(given) => c.material("material", given)?,
+        None => Material::default().into(),
+    };
+    let material = c
+        .machine
+        .draft
+        .number(&material)
+        .ok_or_else(|| mistake("the scene has too many materials"))?;
+    let name = match c.get("name") {
+        Some(given) => {
+            let name = c.text("name", given)?.to_string();
+            let fits = c.machine.limits.check_name(&name);
+            fits.map_err(|m| mistake(m).at(given.place))?;
+            name
+        }
+        None => (count + 1).to_string(),
+    };
+    let occlusion = c.get("ao").map(|g| c.occlusion("ao", g)).transpose()?;
+    let place = c.machine.draft.position(c.place);
+    c.machine.grow(512 + name.len())?;
+    c.machine.draft.objects.push(Object {
+        name,
+        field,
+        material,
+        occlusion,
+        place,
+    });
+    Ok(Value::None)
+}
+
+fn camera(c: &mut Call<'_, '_>) -> Run<Value> {
+    c.once("the camera")?;
+    let point = |name| c.get(name).map(|g| c.point(name, g)).transpose();
+    let direction = |name| {
+        c.get(name)
+            .map(|g| c.direction(name, g).map(unit))
+            .transpose()
+    };
+    let turn = c.get("turn").map(|g| orientation(c, g)).transpose()?;
+    let height = match c.get("lens") {
+        None => None,
+        Some(given) => match given.value {
+            Value::Thing(i) => match c.machine.store.thing(i) {
+                Thing::Orthographic(height) => Some(*height),
+                _ => return Err(c.unfit("lens", "orthographic(height)", given)),
+            },
+            _ => return Err(c.unfit("lens", "orthographic(height)", given)),
+        },
+    };
+    let far = c
+        .get("far")
+        .map(|g| c.ranged("far", g, SMALL, 1e3 * LARGE))
+        .transpose()?;
+    let view = View {
+        eye: point("eye")?,
+        target: point("target")?,
+        up: direction("up")?.unwrap_or(DVec3::Y),
+        direction: direction("direction")?,
+        axes: turn,
+        fov: c.number_or("fov", FOV, 1.0, 170.0)?.to_radians(),
+        height,
+        near: c.number_or("near", 0.0, 0.0, 1e9)?,
+        far,
+    };
+    let names = [
+        ("turn", view.axes.is_some()),
+        ("direction", view.direction.is_some()),
+        ("eye and target", both(&view)),
+    ];
+    let stated: Vec<&str> = names.iter().filter(|n| n.1).map(|n| n.0).collect();
+    if let [first, second, ..] = stated[..] {
+        let m = mistake(format!(
+            "`{first}` and `{second}` both say which way the camera looks"
+        ));
+        return Err(m.help("leave one of them out"));
+    }
+    if view.eye.is_some() && view.eye == view.target {
+        return Err(mistake(
+            "the camera stands where it looks: `eye` and `target` must differ",
+        ));
+    }
+    if far.is_some_and(|far| far <= view.near) {
+        return Err(mistake("`near` must be less than `far`"));
+    }
+    let axes = view.direction.map(|d| axes_of(-d, view.up));
+    if axes == Some(None) {
+        return Err(mistake("`direction` of camera() points nowhere"));
+    }
+    c.machine.draft.view = Some(view);
+    Ok(Value::None)
+}
+
+fn both(view: &View) -> bool {
+    view.eye.is_some() && view.target.is_some()
+}
+
+/// Columns right, up, backwards from degrees about x, y and z, or from a quaternion.
+fn orientation(c: &Call<'_, '_>, given: Given) -> Run<DMat3> {
+    if c.machine
+        .store
+        .items(given.value)
+        .is_some_and(|items| items.len() == 4)
+    {
+        let q = DQuat::from_array(c.numbers("turn", given)?);
+        if q.length_squared() < 1e-30 {
+            return Err(
+                mistake("`turn` of camera() is (0, 0, 0, 0), which turns nothing").at(given.place),
+            );
+        }
+        return Ok(DMat3::from_quat(q.normalize()));
+    }
+    let [x, y, z]: [f64; 3] = c.numbers("turn", given)?;
+    // about x, then y, then z, as .turn(...) of a field does
+    Ok(DMat3::from_euler(
+        EulerRot::ZYX,
+        z.to_radians(),
+        y.to_radians(),
+        x.to_radians(),
+    ))
+}
+
+fn light(c: &mut Call<'_, '_>, source: Source) -> Run<Value> {
+    let strength = if matches!(source, Source::Point { .. }) {
+        10.0
+    } else {
+        1.0
+    };
+    let strength = c.number_or("strength", strength, 0.0, 1e6)? as f32;
+    let shadow = match c.get("shadow") {
+        None => Shadow::SoftClosest { sharpness: 16.0 },
+        Some(given) => {
+            let wanted = "a shadow such as soft(16)";
+            let Value::Thing(i) = given.value else {
+                return Err(c.unfit("shadow", wanted, given));
+            };
+            match c.machine.store.thing(i) {
+                Thing::Shadow(shadow) => *shadow,
+                Thing::Nothing => Shadow::None,
+                _ => return Err(c.unfit("shadow", wanted, given)),
+            }
+        }
+    };
+    let radiance = c.colour_or("color", "white")? * strength;
+    let lights = c.machine.draft.lights.get_or_insert_default();
+    if lights.len() >= LIGHTS {
+        return Err(mistake(format!("more than {LIGHTS} lights")));
+    }
+    lights.push(Light {
+        source,
+        radiance,
+        shadow,
+    });
+    Ok(Value::None)
+}
+
+fn sky(c: &mut Call<'_, '_>) -> Run<Value> {
+    c.once("the sky")?;
+    let default = Sky::default();
+    let colour = |name| c.get(name).map(|g| c.colour(name, g)).transpose();
+    let (one, top) = (colour("color")?, colour("top")?);
+    let top = top.or(one);
+    // a sky is brighter where there is more air
+    let horizon = colour("horizon")?
+        .or(one)
+        .or(top.map(|t| t.lerp(Vec3::ONE, 0.5)));
+    let sky = Sky {
+        top: top.unwrap_or(default.top),
+        horizon: horizon.unwrap_or(default.horizon),
+        bottom: colour("bottom")?.or(one).unwrap_or(default.bottom),
+        ambient: c.number_or("ambient", f64::from(default.ambient), 0.0, 10.0)? as f32,
+    };
+    c.machine.draft.sky = Some(sky);
+    Ok(Value::None)
+}

@@ -1,0 +1,294 @@
+//! What a person is told: one case for each kind of mistake.
+
+use miette::{GraphicalReportHandler, GraphicalTheme};
+use std::fmt::Write;
+use zeroset_language::limits::Limits;
+use zeroset_language::load::{Language, Options, load_text};
+
+fn told(text: &str, language: Language, options: &Options) -> String {
+    let name = if language == Language::Json {
+        "scene.json"
+    } else {
+        "scene.star"
+    };
+    let failed = match load_text(name, text, language, None, options) {
+        Ok(_) => panic!("this was loaded: {text}"),
+        Err(failed) => failed,
+    };
+    let mut out = String::new();
+    let handler =
+        GraphicalReportHandler::new_themed(GraphicalTheme::unicode_nocolor()).with_width(100);
+    handler.render_report(&mut out, &*failed.report).unwrap();
+    // lines end without spaces, as editors like it
+    out.lines()
+        .fold(String::new(), |all, line| all + line.trim_end() + "\n")
+}
+
+#[track_caller]
+fn cases(name: &str, language: Language, cases: &[(&str, &str)]) {
+    let mut all = String::new();
+    for (what, text) in cases {
+        writeln!(
+            all,
+            "== {what}\n{}",
+            told(text, language, &Options::default())
+        )
+        .unwrap();
+    }
+    insta::assert_snapshot!(name, all);
+}
+
+#[test]
+fn names_and_arguments() {
+    cases(
+        "names_and_arguments",
+        Language::Starlark,
+        &[
+            ("unknown function", "show(spere(1))"),
+            (
+                "unknown function, in a branch that never runs",
+                "if False:\n    smoth_union([])\nshow(sphere())",
+            ),
+            ("unknown method", "show(sphere().twits(30))"),
+            ("a primitive as a method", "show(box(1).sphere())"),
+            ("unknown method of a list", "x = [1].push(2)"),
+            ("unknown argument", "show(sphere(\n    radios = 2,\n))"),
+            ("missing argument", "show(sphere().scale())"),
+            ("too many arguments", "show(sphere(1, 2))"),
+            ("argument given twice", "show(sphere(1, radius = 2))"),
+            (
+                "a number where a field is needed",
+                "show(union([sphere(), 3]))",
+            ),
+            ("a function where a field is needed", "show(sphere)"),
+            (
+                "a text where a number is needed",
+                "show(sphere(radius = \"big\"))",
+            ),
+            (
+                "two numbers where three are needed",
+                "show(sphere().move((1, 2)))",
+            ),
+            ("not a number", "show(sphere(1e308 * 10))"),
+            ("out of range", "show(sphere(radius = -1))"),
+            (
+                "an operator between what does not fit",
+                "show(sphere() + box(1))",
+            ),
+            ("a method without its call", "show(sphere().move)"),
+            (
+                "an argument of a script's own function",
+                "def tower(height):\n    return box(height)\nshow(tower(hieght = 2))",
+            ),
+            (
+                "inside of functions",
+                "def leaf(r):\n    return sphere(r)\n\ndef tree():\n    return leaf(-1)\n\nshow(tree())",
+            ),
+            ("a field that does not fit", "show(plane().twist(30))"),
+            ("a spacing too small", "show(sphere().repeat(1))"),
+            (
+                "a direction of no length",
+                "sun(direction = (0, 0, 0))\nshow(sphere())",
+            ),
+            (
+                "an unknown direction",
+                "sun(direction = \"up\")\nshow(sphere())",
+            ),
+        ],
+    );
+}
+
+#[test]
+fn scenes() {
+    cases(
+        "scenes",
+        Language::Starlark,
+        &[
+            ("nothing is shown", "s = sphere()"),
+            (
+                "two cameras",
+                "camera(fov = 40)\nshow(sphere())\ncamera(fov = 50)",
+            ),
+            (
+                "two ways to look",
+                "camera(direction = (1, 0, 0), turn = (0, 90, 0))\nshow(sphere())",
+            ),
+            (
+                "a camera that looks at itself",
+                "camera(eye = (1, 1, 1), target = (1, 1, 1))\nshow(sphere())",
+            ),
+            ("a bad colour", "show(sphere(), material(color = \"#12\"))"),
+            (
+                "a colour of large numbers",
+                "show(sphere(), material(color = (255, 128, 0)))",
+            ),
+            (
+                "an unknown choice",
+                "c = choice(\"c\", [\"round\", \"square\"], \"squar\")\nshow(sphere())",
+            ),
+            (
+                "an unknown word",
+                "render(shading = \"fong\")\nshow(sphere())",
+            ),
+            (
+                "a method of another kind",
+                "render(march = soft(16))\nshow(sphere())",
+            ),
+            (
+                "a picture too large",
+                "render(size = (100000, 100000))\nshow(sphere())",
+            ),
+            (
+                "a slider the wrong way round",
+                "x = slider(\"x\", 1, min = 2, max = 0)\nshow(sphere())",
+            ),
+            (
+                "two parameters of one name",
+                "x = slider(\"x\", 1)\ny = toggle(\"x\")\nshow(sphere())",
+            ),
+            (
+                "a file in a scene without a folder",
+                "load(\"a.star\", \"a\")\nshow(sphere())",
+            ),
+            (
+                "an image that is not there",
+                "show(sphere(), triplanar(\"a.png\"))",
+            ),
+        ],
+    );
+}
+
+#[test]
+fn syntax() {
+    cases(
+        "syntax",
+        Language::Starlark,
+        &[
+            ("an open bracket", "show(sphere("),
+            ("a missing colon", "def f(x)\n    return x"),
+            ("a keyword of Python", "while True:\n    pass"),
+            ("an assignment to a call", "f() = 3"),
+            ("a return outside of a function", "return 3"),
+            ("nested too deeply", &format!("x = {}", "[".repeat(200))),
+            (
+                "too long an expression",
+                &format!("x = 1{}", " + 1".repeat(5000)),
+            ),
+        ],
+    );
+}
+
+#[test]
+fn set_from_outside() {
+    let text =
+        "x = slider(\"bite\", 0.4)\nc = choice(\"look\", [\"gold\", \"glass\"])\nshow(sphere())";
+    let mut all = String::new();
+    for (name, value) in [
+        ("bites", "0.5"),
+        ("bite", "7"),
+        ("bite", "much"),
+        ("look", "glas"),
+    ] {
+        let set = [(name.to_string(), value.to_string())].into();
+        let told = told(
+            text,
+            Language::Starlark,
+            &Options {
+                set,
+                ..Options::default()
+            },
+        );
+        writeln!(all, "== {name}={value}\n{told}").unwrap();
+    }
+    insta::assert_snapshot!("set_from_outside", all);
+}
+
+#[test]
+fn limits() {
+    let small = Limits {
+        ticks: 1000,
+        heap: 10_000,
+        nodes: 20,
+        calls: 10,
+        objects: 2,
+        ..Limits::default()
+    };
+    let mut all = String::new();
+    for (what, text) in [
+        ("ticks", "x = [i for i in range(1000000)]"),
+        ("heap", "x = \"long\" * 100000"),
+        ("nodes", "x = [sphere() for i in range(100)]"),
+        (
+            "nodes of a field used often",
+            "s = sphere()\nfor i in range(8):\n    s = (s - s)\nshow(s)",
+        ),
+        ("calls", "def f(n):\n    return f(n + 1)\nf(0)"),
+        ("objects", "show(sphere())\nshow(sphere())\nshow(sphere())"),
+    ] {
+        let told = told(
+            text,
+            Language::Starlark,
+            &Options {
+                limits: small,
+                ..Options::default()
+            },
+        );
+        writeln!(all, "== {what}\n{told}").unwrap();
+    }
+    insta::assert_snapshot!("limits", all);
+}
+
+#[test]
+fn json() {
+    let object = |field: &str| {
+        format!("{{\n  \"zeroset\": 1,\n  \"objects\": [\n    {{ \"field\": {field} }}\n  ]\n}}")
+    };
+    let fields = [
+        ("unknown field", object(r#"{"spere": {}}"#)),
+        ("unknown parameter", object(r#"{"sphere": {"radios": 1}}"#)),
+        ("wrong type", object(r#"{"sphere": {"radius": "big"}}"#)),
+        ("out of range", object(r#"{"sphere": {"radius": -1}}"#)),
+        ("no operand", object(r#"{"round": {"radius": 1}}"#)),
+        (
+            "a part that is not there",
+            object(r#"{"union": {"of": [{"part": 3}]}}"#),
+        ),
+        ("two keys", object(r#"{"sphere": {}, "box": {}}"#)),
+        (
+            "not rigid",
+            object(
+                r#"{"place": {"rotation": [[1, 0, 0], [0, 1, 0], [0, 1, 1]], "of": {"sphere": {}}}}"#,
+            ),
+        ),
+    ];
+    let others = [
+        ("syntax", "{\n  \"zeroset\": 1,\n  \"objects\": [,]\n}"),
+        ("not a scene", "[1, 2]"),
+        ("no version", "{}"),
+        ("another version", "{\"zeroset\": 9}"),
+        ("unknown member", "{\"zeroset\": 1, \"object\": []}"),
+        ("no objects", "{\"zeroset\": 1, \"objects\": []}"),
+        (
+            "an unknown setting",
+            "{\"zeroset\": 1, \"objects\": [{\"field\": {\"sphere\": {}}}],\n \"settings\": {\"siez\": [1, 2]}}",
+        ),
+        (
+            "a setting out of range",
+            "{\"zeroset\": 1, \"objects\": [{\"field\": {\"sphere\": {}}}],\n \"settings\": {\"max_steps\": 0}}",
+        ),
+        (
+            "a bad colour",
+            "{\"zeroset\": 1, \"objects\": [{\"field\": {\"sphere\": {}}}],\n \"sky\": {\"top\": \"bluish\"}}",
+        ),
+        (
+            "a bad camera",
+            "{\"zeroset\": 1, \"objects\": [{\"field\": {\"sphere\": {}}}],\n \"camera\": {\"fov\": 0}}",
+        ),
+    ];
+    let all: Vec<(&str, &str)> = fields
+        .iter()
+        .map(|(w, t)| (*w, t.as_str()))
+        .chain(others)
+        .collect();
+    cases("json", Language::Json, &all);
+}

@@ -1,0 +1,206 @@
+//! What formulas read beside the point they are given: numbers, and samples on grids.
+
+use super::interval::Interval;
+use std::sync::Arc;
+
+/// The data of a program: its parameters and its grids.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Data {
+    /// Parameters: what sliders, placements and sizes come down to.
+    pub params: Vec<f32>,
+    /// Grids, by number.
+    pub grids: Vec<Arc<Grid>>,
+}
+
+impl From<Vec<f32>> for Data {
+    fn from(params: Vec<f32>) -> Self {
+        Data {
+            params,
+            grids: Vec::new(),
+        }
+    }
+}
+
+impl From<&[f32]> for Data {
+    fn from(params: &[f32]) -> Self {
+        params.to_vec().into()
+    }
+}
+
+/// Why samples make no grid.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum GridError {
+    /// An axis has too few nodes to interpolate between, or too many for a GPU.
+    #[error("a grid of {}x{}x{} nodes: every axis takes 2 to {most}", .nodes[0], .nodes[1], .nodes[2], most = Grid::MOST)]
+    Nodes {
+        /// Nodes along x, y and z.
+        nodes: [u32; 3],
+    },
+    /// Not one sample a node.
+    #[error("a grid of {nodes} nodes has {values} samples")]
+    Count {
+        /// Nodes.
+        nodes: usize,
+        /// Samples.
+        values: usize,
+    },
+    /// A sample that is no finite number.
+    #[error("sample {at} of a grid is {value}: samples must be finite numbers")]
+    Value {
+        /// Its place.
+        at: usize,
+        /// What it is.
+        value: f32,
+    },
+}
+
+/// Samples of a field at the nodes of a box, x fastest. Between the nodes a formula interpolates (`Args::sample`); a node is
+/// one unit from the next here, whatever the field's voxels measure.
+#[derive(Debug, PartialEq)]
+pub struct Grid {
+    nodes: [u32; 3],
+    values: Vec<f32>,
+    steepest: [f32; 3],
+    /// Ranges over blocks of 2, 4, 8, ... nodes a side, for questions about many nodes.
+    ranges: Vec<Ranges>,
+}
+
+/// Ranges over the blocks of a grid.
+#[derive(Debug, PartialEq)]
+struct Ranges {
+    blocks: [u32; 3],
+    ranges: Vec<[f32; 2]>,
+}
+
+impl Grid {
+    /// The most nodes an axis may have: what every GPU takes as a texture.
+    pub const MOST: u32 = 2048;
+
+    /// A grid of these samples.
+    ///
+    /// # Errors
+    /// Too few or too many nodes, another number of samples, samples that are not finite.
+    pub fn new(nodes: [u32; 3], values: Vec<f32>) -> Result<Grid, GridError> {
+        if !nodes.iter().all(|n| (2..=Grid::MOST).contains(n)) {
+            return Err(GridError::Nodes { nodes });
+        }
+        let count = nodes.iter().map(|n| *n as usize).product();
+        if values.len() != count {
+            let values = values.len();
+            return Err(GridError::Count {
+                nodes: count,
+                values,
+            });
+        }
+        if let Some(at) = values.iter().position(|v| !v.is_finite()) {
+            let value = values[at];
+            return Err(GridError::Value { at, value });
+        }
+        let mut grid = Grid {
+            nodes,
+            values,
+            steepest: [0.0; 3],
+            ranges: Vec::new(),
+        };
+        grid.steepest = [0, 1, 2].map(|axis| grid.steepest_along(axis));
+        grid.gather_ranges();
+        Ok(grid)
+    }
+
+    /// Nodes along x, y and z.
+    pub fn nodes(&self) -> [u32; 3] {
+        self.nodes
+    }
+
+    /// The samples, x fastest.
+    pub fn values(&self) -> &[f32] {
+        &self.values
+    }
+
+    /// The largest difference between neighbours along x, y and z: what is interpolated is no steeper along that axis, since a
+    /// derivative of a trilinear function lies between those along the edges of its cell.
+    pub fn steepest(&self) -> [f32; 3] {
+        self.steepest
+    }
+
+    /// The sample at a node; coordinates beyond the grid count as its last ones.
+    #[inline(always)]
+    pub fn at(&self, node: [usize; 3]) -> f32 {
+        let [i, j, k] = [0, 1, 2].map(|axis| node[axis].min(self.nodes[axis] as usize - 1));
+        let [nx, ny, _] = self.nodes.map(|n| n as usize);
+        self.values[i + nx * (j + ny * k)]
+    }
+
+    fn steepest_along(&self, axis: usize) -> f32 {
+        let mut steepest = 0.0_f32;
+        let [nx, ny, nz] = self.nodes.map(|n| n as usize);
+        for k in 0..nz {
+            for j in 0..ny {
+                for i in 0..nx {
+                    let mut next = [i, j, k];
+                    next[axis] += 1;
+                    steepest = steepest.max((self.at(next) - self.at([i, j, k])).abs());
+                }
+            }
+        }
+        steepest
+    }
+
+    fn gather_ranges(&mut self) {
+        let mut below: Option<Ranges> = None;
+        loop {
+            let from = below.as_ref().map_or(self.nodes, |r| r.blocks);
+            if from.iter().all(|n| *n <= 2) {
+                break;
+            }
+            let blocks = from.map(|n| n.div_ceil(2));
+            let mut ranges = Vec::new();
+            for k in 0..blocks[2] {
+                for j in 0..blocks[1] {
+                    for i in 0..blocks[0] {
+                        let first = [2 * i, 2 * j, 2 * k];
+                        let last = [0, 1, 2].map(|axis| (first[axis] + 1).min(from[axis] - 1));
+                        ranges.push(self.range_of(below.as_ref(), first, last));
+                    }
+                }
+            }
+            self.ranges.extend(below.replace(Ranges { blocks, ranges }));
+        }
+        self.ranges.extend(below);
+    }
+
+    /// The range over blocks (or nodes, without any) `first` to `last`.
+    fn range_of(&self, ranges: Option<&Ranges>, first: [u32; 3], last: [u32; 3]) -> [f32; 2] {
+        let mut range = [f32::INFINITY, f32::NEG_INFINITY];
+        for k in first[2]..=last[2] {
+            for j in first[1]..=last[1] {
+                for i in first[0]..=last[0] {
+                    let [lo, hi] = match ranges {
+                        Some(r) => r.ranges[(i + r.blocks[0] * (j + r.blocks[1] * k)) as usize],
+                        None => [self.at([i, j, k].map(|n| n as usize)); 2],
+                    };
+                    range = [range[0].min(lo), range[1].max(hi)];
+                }
+            }
+        }
+        range
+    }
+
+    /// The range of all samples at the nodes in a box; what lies beyond the grid counts as its last nodes.
+    pub(super) fn range(&self, node: [Interval; 3]) -> Interval {
+        let held = |x: f64, axis: usize| x.clamp(0.0, f64::from(self.nodes[axis] - 1)) as u32;
+        let mut first = [0, 1, 2].map(|axis| held(node[axis].lo.floor(), axis));
+        let mut last = [0, 1, 2].map(|axis| held(node[axis].hi.ceil(), axis));
+        // as few blocks as hold the box: four a side at most
+        let mut ranges = self.ranges.iter();
+        let mut level = None;
+        while (0..3).any(|axis| last[axis] - first[axis] >= 4) {
+            let Some(above) = ranges.next() else { break };
+            level = Some(above);
+            first = first.map(|n| n / 2);
+            last = last.map(|n| n / 2);
+        }
+        let [lo, hi] = self.range_of(level, first, last);
+        Interval::new(lo.into(), hi.into())
+    }
+}

@@ -1,0 +1,574 @@
+//! A proven range: every operation rounds outwards (Moore 1966).
+//!
+//! A range encloses the values that a formula takes for all real arguments in the ranges that it is given, and those that
+//! `f64` gives for them. An infinite end stands for values without a bound. Where a formula has no value (a division by
+//! zero, the logarithm of a negative number) the range says nothing about that point.
+
+use super::data::Data;
+use super::list::fold_list;
+use super::real::{Ends, Masked, Ops, Real, State, interpolate, steps};
+use super::vector::Vec3;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+
+/// All numbers from `lo` to `hi`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// Smallest value; not NaN, and not above `hi`.
+    pub lo: f64,
+    /// Largest value; not NaN.
+    pub hi: f64,
+}
+
+/// What a condition may be, over a box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Maybe {
+    /// Whether it may hold somewhere.
+    pub yes: bool,
+    /// Whether it may fail somewhere.
+    pub no: bool,
+}
+
+impl Maybe {
+    /// Whether it may hold in one place and fail in another.
+    pub fn undecided(self) -> bool {
+        self.yes && self.no
+    }
+}
+
+impl BitAnd for Maybe {
+    type Output = Self;
+    fn bitand(self, o: Self) -> Self {
+        Maybe {
+            yes: self.yes && o.yes,
+            no: self.no || o.no,
+        }
+    }
+}
+
+impl BitOr for Maybe {
+    type Output = Self;
+    fn bitor(self, o: Self) -> Self {
+        Maybe {
+            yes: self.yes || o.yes,
+            no: self.no && o.no,
+        }
+    }
+}
+
+impl Not for Maybe {
+    type Output = Self;
+    fn not(self) -> Self {
+        Maybe {
+            yes: self.no,
+            no: self.yes,
+        }
+    }
+}
+
+/// Rounded down; what is unknown is unbounded.
+pub(super) fn down(x: f64) -> f64 {
+    if x.is_nan() {
+        f64::NEG_INFINITY
+    } else {
+        x.next_down()
+    }
+}
+
+/// Rounded up; what is unknown is unbounded.
+pub(super) fn up(x: f64) -> f64 {
+    if x.is_nan() {
+        f64::INFINITY
+    } else {
+        x.next_up()
+    }
+}
+
+/// A product of ends: zero times infinity is zero, because an infinite end stands for every large number.
+pub(super) fn product(a: f64, b: f64) -> f64 {
+    if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
+}
+
+/// Roundings that a function of the system's library may be off by. (The libraries in use stay below one.)
+const LIBRARY_ULPS: u32 = 3;
+
+fn smallest(ends: [f64; 4]) -> f64 {
+    ends.into_iter().fold(f64::INFINITY, f64::min)
+}
+
+fn largest(ends: [f64; 4]) -> f64 {
+    ends.into_iter().fold(f64::NEG_INFINITY, f64::max)
+}
+
+impl Interval {
+    /// All numbers.
+    pub const WHOLE: Interval = Interval {
+        lo: f64::NEG_INFINITY,
+        hi: f64::INFINITY,
+    };
+
+    /// The range between two numbers, in any order; NaN stands for no bound.
+    pub fn new(a: f64, b: f64) -> Self {
+        if a.is_nan() || b.is_nan() {
+            return Interval {
+                lo: if a.is_nan() { f64::NEG_INFINITY } else { a },
+                hi: if b.is_nan() { f64::INFINITY } else { b },
+            };
+        }
+        Interval {
+            lo: a.min(b),
+            hi: a.max(b),
+        }
+    }
+
+    /// The number alone.
+    pub fn point(x: f64) -> Self {
+        Interval::new(x, x)
+    }
+
+    /// The smallest range that holds both.
+    pub fn hull(self, o: Self) -> Self {
+        Interval {
+            lo: self.lo.min(o.lo),
+            hi: self.hi.max(o.hi),
+        }
+    }
+
+    /// What both hold; self where that is nothing.
+    pub(super) fn intersect(self, o: Self) -> Self {
+        let both = Interval {
+            lo: self.lo.max(o.lo),
+            hi: self.hi.min(o.hi),
+        };
+        if both.lo <= both.hi { both } else { self }
+    }
+
+    /// Self, but not outside [`lo`, `hi`].
+    pub(super) fn clip(self, lo: f64, hi: f64) -> Self {
+        Interval {
+            lo: self.lo.clamp(lo, hi),
+            hi: self.hi.clamp(lo, hi),
+        }
+    }
+
+    /// Whether the range holds `x`.
+    pub fn contains(self, x: f64) -> bool {
+        self.lo <= x && x <= self.hi
+    }
+
+    /// Largest absolute value.
+    pub fn mag(self) -> f64 {
+        self.lo.abs().max(self.hi.abs())
+    }
+
+    fn is_zero(self) -> bool {
+        self.lo == 0.0 && self.hi == 0.0
+    }
+
+    /// The ends, rounded outwards once.
+    fn rounded(lo: f64, hi: f64) -> Self {
+        Interval {
+            lo: down(lo),
+            hi: up(hi),
+        }
+    }
+
+    /// The ends, rounded outwards by what a library function may be off by.
+    fn library(lo: f64, hi: f64) -> Self {
+        let mut r = Interval::new(lo, hi);
+        for _ in 0..LIBRARY_ULPS {
+            r = Interval::rounded(r.lo, r.hi);
+        }
+        r
+    }
+
+    /// A library function that grows, or that falls.
+    fn monotone(self, f: impl Fn(f64) -> f64) -> Self {
+        Interval::library(f(self.lo), f(self.hi))
+    }
+}
+
+impl From<f32> for Interval {
+    fn from(x: f32) -> Self {
+        Interval::point(x.into())
+    }
+}
+
+impl Neg for Interval {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Interval {
+            lo: -self.hi,
+            hi: -self.lo,
+        }
+    }
+}
+
+impl Add for Interval {
+    type Output = Self;
+    fn add(self, o: Self) -> Self {
+        // without rounding, so that what is zero stays so
+        if o.is_zero() {
+            return self;
+        }
+        if self.is_zero() {
+            return o;
+        }
+        Interval::rounded(self.lo + o.lo, self.hi + o.hi)
+    }
+}
+
+impl Sub for Interval {
+    type Output = Self;
+    fn sub(self, o: Self) -> Self {
+        self + -o
+    }
+}
+
+impl Mul for Interval {
+    type Output = Self;
+    fn mul(self, o: Self) -> Self {
+        if self.is_zero() || o.is_zero() {
+            return Interval::point(0.0);
+        }
+        let ends = [
+            product(self.lo, o.lo),
+            product(self.lo, o.hi),
+            product(self.hi, o.lo),
+            product(self.hi, o.hi),
+        ];
+        Interval::rounded(smallest(ends), largest(ends))
+    }
+}
+
+impl Div for Interval {
+    type Output = Self;
+    fn div(self, o: Self) -> Self {
+        if o.lo > 0.0 || o.hi < 0.0 {
+            self * Interval::rounded(1.0 / o.hi, 1.0 / o.lo)
+        } else if o.lo == 0.0 && o.hi > 0.0 {
+            self * Interval::new(down(1.0 / o.hi), f64::INFINITY)
+        } else if o.hi == 0.0 && o.lo < 0.0 {
+            self * Interval::new(f64::NEG_INFINITY, up(1.0 / o.lo))
+        } else {
+            Interval::WHOLE
+        }
+    }
+}
+
+macro_rules! literal_arithmetic {
+    ($($t:ident $f:ident),*) => {$(
+        impl $t<f32> for Interval {
+            type Output = Self;
+            fn $f(self, o: f32) -> Self {
+                $t::$f(self, Interval::from(o))
+            }
+        }
+    )*};
+}
+literal_arithmetic!(Add add, Sub sub, Mul mul, Div div);
+
+impl Masked for Interval {
+    type Mask = Maybe;
+}
+
+macro_rules! ops {
+    ($($rhs:ty),*) => {$(
+        impl Ops<$rhs> for Interval {
+            fn min(self, o: $rhs) -> Self {
+                let o = Interval::from(o);
+                Interval { lo: self.lo.min(o.lo), hi: self.hi.min(o.hi) }
+            }
+            fn max(self, o: $rhs) -> Self {
+                let o = Interval::from(o);
+                Interval { lo: self.lo.max(o.lo), hi: self.hi.max(o.hi) }
+            }
+            fn below(self, o: $rhs) -> Maybe {
+                let o = Interval::from(o);
+                Maybe { yes: self.lo < o.hi, no: self.hi >= o.lo }
+            }
+            fn above(self, o: $rhs) -> Maybe {
+                Interval::from(o).below(self)
+            }
+        }
+    )*};
+}
+ops!(Interval, f32);
+
+impl State<Interval> for Interval {
+    fn zip(self, o: Self, f: impl Fn(Self, Self) -> Self + Copy) -> Self {
+        f(self, o)
+    }
+}
+
+impl Real for Interval {
+    type Base = Self;
+    type Scalar = Interval;
+    type Store = Data;
+
+    fn param(store: &Data, at: usize) -> Self {
+        f32::param(store, at).into()
+    }
+    fn fetch(store: &Data, grid: Self, node: Vec3<Self>) -> Self {
+        match store.grids.get(grid.lo as usize) {
+            Some(grid) => grid.range(node.array()),
+            None => Interval::WHOLE,
+        }
+    }
+    fn sample(store: &Data, grid: Self, nodes: Vec3<Self>, p: Vec3<Self>) -> Self {
+        // within one cell, ranges are followed through the interpolation; what is interpolated never leaves its nodes
+        let p = p.map(|c| c.max(0.0));
+        let nodes_of = Interval::fetch(
+            store,
+            grid,
+            p.map(|c| Interval::new(c.lo.floor(), c.hi.floor() + 1.0)),
+        );
+        interpolate(store, grid, nodes, p).intersect(nodes_of)
+    }
+    fn constant(c: f64) -> Self {
+        // 3 is meant to be 3, but pi stands for a number beside it
+        if f64::from(c as f32) == c {
+            Interval::point(c)
+        } else {
+            Interval::rounded(c, c)
+        }
+    }
+    fn like(self, s: Self) -> Self {
+        s
+    }
+    fn lit(self, c: f32) -> Self {
+        c.into()
+    }
+    fn select(m: Maybe, yes: Self, no: Self) -> Self {
+        if m.undecided() {
+            yes.hull(no)
+        } else if m.yes {
+            yes
+        } else {
+            no
+        }
+    }
+
+    fn sqrt(self) -> Self {
+        let r = Interval::rounded(self.lo.max(0.0).sqrt(), self.hi.max(0.0).sqrt());
+        r.clip(0.0, f64::INFINITY)
+    }
+    fn abs(self) -> Self {
+        if self.lo >= 0.0 {
+            self
+        } else if self.hi <= 0.0 {
+            -self
+        } else {
+            Interval {
+                lo: 0.0,
+                hi: self.mag(),
+            }
+        }
+    }
+    fn floor(self) -> Self {
+        Interval {
+            lo: self.lo.floor(),
+            hi: self.hi.floor(),
+        }
+    }
+    fn sin_cos(self) -> (Self, Self) {
+        (wave(self, f64::sin, FRAC_PI_2), wave(self, f64::cos, 0.0))
+    }
+    fn exp(self) -> Self {
+        self.monotone(f64::exp).clip(0.0, f64::INFINITY)
+    }
+    fn exp2(self) -> Self {
+        self.monotone(f64::exp2).clip(0.0, f64::INFINITY)
+    }
+    fn ln(self) -> Self {
+        self.clip(0.0, f64::INFINITY).monotone(f64::ln)
+    }
+    fn powf(self, k: Self) -> Self {
+        (self.ln() * k).exp()
+    }
+    fn atan2(self, x: Self) -> Self {
+        // the cut, where the angle jumps from pi to -pi, and the origin, where it may be any
+        if x.lo <= 0.0 && self.contains(0.0) {
+            return Interval::library(-PI, PI);
+        }
+        // elsewhere the angle of a box is largest and smallest at corners
+        let ends = [
+            self.lo.atan2(x.lo),
+            self.lo.atan2(x.hi),
+            self.hi.atan2(x.lo),
+            self.hi.atan2(x.hi),
+        ];
+        Interval::library(smallest(ends), largest(ends))
+    }
+    fn asin(self) -> Self {
+        self.clip(-1.0, 1.0).monotone(f64::asin)
+    }
+    fn acos(self) -> Self {
+        self.clip(-1.0, 1.0).monotone(f64::acos)
+    }
+    fn atan(self) -> Self {
+        self.monotone(f64::atan)
+    }
+    fn tanh(self) -> Self {
+        self.monotone(f64::tanh).clip(-1.0, 1.0)
+    }
+    fn sq(self) -> Self {
+        let a = self.abs();
+        Interval::rounded(a.lo * a.lo, a.hi * a.hi).clip(0.0, f64::INFINITY)
+    }
+    fn norm<const N: usize>(v: [Self; N]) -> Self {
+        let [first, rest @ ..] = v.as_slice() else {
+            return Interval::point(0.0);
+        };
+        rest.iter().fold(first.sq(), |s, x| s + x.sq()).sqrt()
+    }
+    fn unit(self, norm: Self) -> Self {
+        (self / norm.max(1e-18)).clip(-1.0, 1.0)
+    }
+    fn sign(self) -> Self {
+        let sign = |x: f64| if x < 0.0 { -1.0 } else { 1.0 };
+        Interval {
+            lo: sign(self.lo),
+            hi: sign(self.hi),
+        }
+    }
+    fn fract(self) -> Self {
+        let f = self.floor();
+        if f.lo < f.hi {
+            Interval { lo: 0.0, hi: 1.0 }
+        } else {
+            (self - f).clip(0.0, 1.0)
+        }
+    }
+    fn modulo<C: Copy>(self, c: C) -> Self
+    where
+        Self: Ops<C>,
+    {
+        modulo(self, self.lit(1.0) * c)
+    }
+
+    fn step_slope(self, stepped: Self) -> Self {
+        if stepped.lo < stepped.hi {
+            Interval::WHOLE
+        } else {
+            Interval::point(0.0)
+        }
+    }
+    fn jump_slope(m: Maybe, slope: Self) -> Self {
+        if m.undecided() {
+            Interval::WHOLE
+        } else {
+            slope
+        }
+    }
+    fn proven(self, lo: f32, hi: f32, _at: Vec3<Self>, _slope: f32) -> Self {
+        self.clip(lo.into(), hi.into())
+    }
+    fn bounded_slope(p: Vec3<Self>, slope: f32, f: impl Fn(Vec3<Self>) -> Self) -> Self {
+        let direct = f(p);
+        match around(p, slope, &f) {
+            Some(near) => direct.intersect(near),
+            None => direct,
+        }
+    }
+    fn whole(self) -> Self {
+        let whole = Interval {
+            lo: self.lo.ceil(),
+            hi: self.hi.floor(),
+        };
+        if whole.lo <= whole.hi { whole } else { self }
+    }
+
+    fn repeat_while<T: State<Self>>(
+        limit: Self,
+        init: T,
+        live: impl Fn(T) -> Maybe,
+        step: impl Fn(T) -> T,
+    ) -> T {
+        // `s` is what may still run, `done` gathers what may have left
+        let (mut s, mut done): (T, Option<T>) = (init, None);
+        let join = |done: Option<T>, s: T| match done {
+            Some(d) => d.zip(s, Interval::hull),
+            None => s,
+        };
+        let sure = steps(limit.lo);
+        for i in 0..steps(limit.hi) {
+            let m = live(s);
+            if !m.yes {
+                return join(done, s);
+            }
+            if m.no || i >= sure {
+                done = Some(join(done, s));
+            }
+            s = step(s);
+        }
+        join(done, s)
+    }
+
+    fn fold<const W: usize, T: State<Self>>(
+        store: &Data,
+        at: usize,
+        ends: Ends,
+        init: T,
+        step: impl Fn(T, [Self; W], [Self; W]) -> T,
+    ) -> T {
+        fold_list(
+            &store.params,
+            at,
+            ends,
+            init,
+            |s, a: [f32; W], b: [f32; W]| step(s, a.map(Into::into), b.map(Into::into)),
+        )
+    }
+}
+
+/// A function between -1 and 1 of period 2 pi whose maxima lie at `peak` and whole periods from it.
+fn wave(x: Interval, f: impl Fn(f64) -> f64, peak: f64) -> Interval {
+    let narrow = x.hi - x.lo < TAU && x.mag() < 1e9;
+    if !narrow {
+        return Interval { lo: -1.0, hi: 1.0 };
+    }
+    // whether a number `at + 2 pi n` lies in the range, or within a hair of it
+    let hair = 1e-6;
+    let holds = |at: f64| ((x.hi - at + hair) / TAU).floor() >= ((x.lo - at - hair) / TAU).ceil();
+    let mut r = Interval::library(f(x.lo), f(x.hi)).clip(-1.0, 1.0);
+    if holds(peak + PI) {
+        r.lo = -1.0;
+    }
+    if holds(peak) {
+        r.hi = 1.0;
+    }
+    r
+}
+
+fn modulo(x: Interval, c: Interval) -> Interval {
+    let n = (x / c).floor();
+    if n.lo == n.hi {
+        return x - n * c;
+    }
+    // by rounding the result may lie outside [0, c] by a hair
+    let hair = 4.0 * f64::EPSILON * (x.mag() + c.mag());
+    Interval::rounded(c.lo.min(0.0) - hair, c.hi.max(0.0) + hair)
+}
+
+/// What a function of slope at most `slope` may be in the box `p`, from its range at the box's centre. None for an unbounded
+/// box.
+pub(super) fn around(
+    p: Vec3<Interval>,
+    slope: f32,
+    at_centre: impl FnOnce(Vec3<Interval>) -> Interval,
+) -> Option<Interval> {
+    let centre = p.map(|c| 0.5 * (c.lo + c.hi));
+    let away = |c: Interval, m: f64| up(c.hi - m).max(up(m - c.lo));
+    let reach = up(away(p.x, centre.x)
+        .hypot(away(p.y, centre.y))
+        .hypot(away(p.z, centre.z)));
+    let by = f64::from(slope) * reach;
+    if !by.is_finite() {
+        return None;
+    }
+    let v = at_centre(centre.map(Interval::point));
+    // for the roundings of the formula's values elsewhere in the box
+    let hair = 1e-12 * (by + v.mag());
+    Some(Interval::rounded(v.lo - by - hair, v.hi + by + hair))
+}

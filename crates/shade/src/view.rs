@@ -1,0 +1,370 @@
+//! Rays through pixels, how wide a pixel is along them, and the part of a ray that can meet the scene.
+
+use zeroset_catalogue::bounds::Aabb;
+use zeroset_number::{Real, Vec3, v3};
+use zeroset_scene::camera::{Camera, Lens};
+
+/// Evaluations in single precision are off by about this share of the largest coordinate.
+pub const ROUNDING: f32 = 4.0 * f32::EPSILON;
+
+/// A number that grows evenly along a ray: `slope * t + constant`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Linear {
+    /// Growth per unit of `t`.
+    pub slope: f32,
+    /// Value at 0.
+    pub constant: f32,
+}
+
+impl Linear {
+    /// The value at `t`.
+    #[inline(always)]
+    pub fn at<R: Real<Scalar = f32>>(self, t: R) -> R {
+        t * self.slope + self.constant
+    }
+}
+
+/// A camera with a picture size: what turns pixels into rays.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    /// Whether all rays go through the eye; else they are parallel.
+    pub pinhole: bool,
+    /// Where the camera is.
+    pub eye: [f32; 3],
+    /// To the right of the picture.
+    pub right: [f32; 3],
+    /// Upwards on the picture.
+    pub up: [f32; 3],
+    /// Against the way the camera looks.
+    pub back: [f32; 3],
+    /// Side of a pixel on the plane at distance 1 (pinhole), or anywhere (orthographic).
+    pub scale: f32,
+    /// Half the picture's size in pixels.
+    pub half: [f32; 2],
+    /// Rays start here.
+    pub near: f32,
+    /// Rays end here at the latest.
+    pub far: f32,
+    /// Full width of a pixel along the ray through the middle of the picture; see [`View::narrow`].
+    pub pixel: Linear,
+    /// What single precision cannot tell apart along a ray.
+    pub rounding: Linear,
+    /// Nearer than this to the surface a ray is under its footprint: `footprint` pixel widths in the middle of the picture, and
+    /// what rounding adds.
+    pub threshold: Linear,
+    /// Share of a pixel's width that is its footprint.
+    footprint: f32,
+    /// Share of a pixel's footprint that rays are marched with: in small pictures as if they were of [`FINE`] rows.
+    pub fine: f32,
+}
+
+/// Rays of pictures with fewer rows are marched as if they had this many: their pixels are wider than what is to be seen.
+pub const FINE: u32 = 512;
+
+impl View {
+    /// `footprint`: what is nearer to a ray than this many pixel widths is below what the picture shows.
+    pub fn new(camera: &Camera, [width, height]: [u32; 2], footprint: f32) -> View {
+        let (slope, constant) = camera.pixel_width(height);
+        let pixel = Linear { slope, constant };
+        let scale = camera.plane_height() / height as f32;
+        let half = [0.5 * width as f32, 0.5 * height as f32];
+        let pinhole = matches!(camera.lens, Lens::Pinhole { .. });
+        let aside = if pinhole {
+            0.0
+        } else {
+            scale * half[0].hypot(half[1])
+        };
+        let rounding = Linear {
+            slope: ROUNDING,
+            constant: (ROUNDING * (camera.eye.length() + aside)).max(f32::MIN_POSITIVE),
+        };
+        let threshold = Linear {
+            slope: footprint * slope + rounding.slope,
+            constant: footprint * constant + rounding.constant,
+        };
+        View {
+            pinhole,
+            eye: camera.eye.to_array(),
+            right: camera.axes.x_axis.to_array(),
+            up: camera.axes.y_axis.to_array(),
+            back: camera.axes.z_axis.to_array(),
+            scale,
+            half,
+            near: camera.near,
+            far: camera.far,
+            pixel,
+            rounding,
+            threshold,
+            footprint,
+            fine: (height as f32 / FINE as f32).min(1.0),
+        }
+    }
+
+    /// How much narrower the footprint of a pixel is along `ray` (what [`View::ray`] gave) than in the middle of the
+    /// picture, for the same distance: pixels have equal sides on a plane, which a ray at the angle a meets cos a later and
+    /// aslant.
+    #[inline(always)]
+    pub fn narrow<R: Real<Scalar = f32>>(&self, ray: Vec3<R>) -> R {
+        if self.pinhole {
+            let [x, y, z] = self.back;
+            (ray.x * x + ray.y * y + ray.z * z).sq()
+        } else {
+            ray.x.lit(1.0)
+        }
+    }
+
+    /// The radius of this share of the footprint, but for what rounding adds, in the middle of the picture.
+    pub fn footprint(&self, share: f32) -> Linear {
+        Linear {
+            slope: share * self.footprint * self.pixel.slope,
+            constant: share * self.footprint * self.pixel.constant,
+        }
+    }
+
+    /// The radius of the footprint at distance `t` of a ray that is that [`narrow`](View::narrow).
+    #[inline(always)]
+    pub fn near<R: Real<Scalar = f32>>(&self, t: R, narrow: R) -> R {
+        self.footprint(1.0).at(t * narrow) + self.rounding.at(t)
+    }
+
+    /// The width of a pixel at distance `t` of a ray that is that [`narrow`](View::narrow): the side of a square of its area.
+    #[inline(always)]
+    pub fn width<R: Real<Scalar = f32>>(&self, t: R, narrow: R) -> R {
+        // area cos^3 a: the square root of that, with the square of the cosine given
+        self.pixel.at(t * (narrow * narrow.sqrt()).sqrt())
+    }
+
+    /// A place on the picture, in pixels from the top left corner, in units of the plane at distance 1 (pinhole) or of the
+    /// scene (orthographic).
+    #[inline(always)]
+    fn plane<R: Real<Scalar = f32>>(&self, x: R, y: R) -> (R, R) {
+        (
+            (x - self.half[0]) * self.scale,
+            -(y - self.half[1]) * self.scale,
+        )
+    }
+
+    /// What of the ray through (`x`, `y`) pixels differs from ray to ray: the direction (pinhole) or the origin.
+    #[inline(always)]
+    pub fn ray<R: Real<Scalar = f32>>(&self, x: R, y: R) -> Vec3<R> {
+        let (u, v) = self.plane(x, y);
+        if self.pinhole {
+            self.slant(u, v).normalize()
+        } else {
+            self.across(u, v, self.eye)
+        }
+    }
+
+    /// The direction through (`u`, `v`) on the plane at distance 1, not normalised.
+    #[inline(always)]
+    fn slant<R: Real<Scalar = f32>>(&self, u: R, v: R) -> Vec3<R> {
+        self.across(u, v, self.back.map(|c| -c))
+    }
+
+    /// The place (`u`, `v`) on the plane of the picture, from `origin`.
+    #[inline(always)]
+    fn across<R: Real<Scalar = f32>>(&self, u: R, v: R, origin: [f32; 3]) -> Vec3<R> {
+        constant(u, self.right) * u + constant(u, self.up) * v + constant(u, origin)
+    }
+
+    /// Origin and direction from what [`View::ray`] gave.
+    #[inline(always)]
+    pub fn split<R: Real<Scalar = f32>>(&self, ray: Vec3<R>) -> (Vec3<R>, Vec3<R>) {
+        if self.pinhole {
+            (constant(ray.x, self.eye), ray)
+        } else {
+            (ray, -constant(ray.x, self.back))
+        }
+    }
+
+    /// A cone around the ray through (`x`, `y`) that holds all rays through the square of `reach` pixels around it: its
+    /// radius at distance `t` is `slope * t + constant`.
+    ///
+    /// The slope is the tangent of the largest angle to a corner: one to an edge would leave the corners out.
+    #[inline(always)]
+    pub fn cone<R: Real<Scalar = f32>>(&self, x: R, y: R, reach: f32) -> (R, f32) {
+        let (u, v) = self.plane(x, y);
+        let e = reach * self.scale;
+        if !self.pinhole {
+            return (u.lit(0.0), e * std::f32::consts::SQRT_2);
+        }
+        // for axis a and corner a + d: tan = |a x d| / (a . a + a . d), with a = (u, v, 1) in the camera's axes
+        let square = u.sq() + v.sq() + 1.0;
+        let mut slope = u.lit(0.0);
+        for (du, dv) in [(e, e), (e, -e), (-e, e), (-e, -e)] {
+            let dot = u * du + v * dv;
+            let cross = (square * (2.0 * e * e) - dot.sq()).max(0.0).sqrt();
+            slope = slope.max(cross / (square + dot).max(1e-6));
+        }
+        (slope, 0.0)
+    }
+}
+
+/// A box that holds the whole solid, in single precision.
+#[derive(Clone, Copy, Debug)]
+pub struct Region {
+    /// Least coordinates.
+    pub min: [f32; 3],
+    /// Largest coordinates.
+    pub max: [f32; 3],
+}
+
+impl Region {
+    /// The smallest such box of single precision numbers.
+    pub fn new(bounds: &Aabb) -> Region {
+        Region {
+            min: bounds.min.map(|x| {
+                if f64::from(x as f32) > x {
+                    (x as f32).next_down()
+                } else {
+                    x as f32
+                }
+            }),
+            max: bounds.max.map(|x| {
+                if f64::from(x as f32) < x {
+                    (x as f32).next_up()
+                } else {
+                    x as f32
+                }
+            }),
+        }
+    }
+
+    /// From this `t` on the ray is farther from the box than `slope * t + constant`, for good. Infinite where it never is.
+    ///
+    /// Beyond the plane of one side, the distance to the box grows by the cosine `c` to that side and is at least
+    /// `c t - d`, with `d` the distance to the plane at the start.
+    #[inline(always)]
+    pub fn leave<R: Real<Scalar = f32>>(&self, o: Vec3<R>, d: Vec3<R>, slope: R, constant: R) -> R {
+        let mut end = o.x.lit(f32::INFINITY);
+        let (o, d) = (o.array(), d.array());
+        for k in 0..3 {
+            let backwards = d[k].negative();
+            let depth = R::select(backwards, o[k] - self.min[k], -o[k] + self.max[k]);
+            let gain = d[k].abs() - slope;
+            let t = (depth + constant) / gain.max(1e-12);
+            end = R::select(gain.above(1e-12), end.min(t), end);
+        }
+        end.max(0.0)
+    }
+
+    /// Up to this `t` the ray is farther from the box than `slope * t + constant`. Zero where it starts near it.
+    #[inline(always)]
+    pub fn enter<R: Real<Scalar = f32>>(&self, o: Vec3<R>, d: Vec3<R>, slope: R, constant: R) -> R {
+        let mut start = o.x.lit(0.0);
+        let (o, d) = (o.array(), d.array());
+        for k in 0..3 {
+            let backwards = d[k].negative();
+            let gap = R::select(backwards, o[k] - self.max[k], -o[k] + self.min[k]);
+            start = start.max((gap - constant) / (d[k].abs() + slope).max(1e-12));
+        }
+        start.min(f32::MAX)
+    }
+}
+
+/// `c` as numbers of the company of `x`.
+#[inline(always)]
+fn constant<R: Real<Scalar = f32>>(x: R, c: [f32; 3]) -> Vec3<R> {
+    v3(x.lit(c[0]), x.lit(c[1]), x.lit(c[2]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3 as G;
+
+    fn cameras() -> [Camera; 2] {
+        let lens = [
+            Lens::Pinhole { fov: 0.8 },
+            Lens::Orthographic { height: 3.0 },
+        ];
+        lens.map(|l| {
+            Camera::look_at(G::new(3.0, 2.0, 4.0), G::new(0.0, 0.5, 0.0), G::Y, l).expect("a view")
+        })
+    }
+
+    #[test]
+    fn rays_are_the_cameras() {
+        for camera in cameras() {
+            let view = View::new(&camera, [64, 48], 0.5);
+            for (x, y) in [(0.0, 0.0), (64.0, 48.0), (12.25, 40.5)] {
+                let (o, d) = view.split(view.ray(x, y));
+                let (p, q) = camera.ray(x, y, [64, 48]);
+                assert!(
+                    (G::from(o.array()) - p).length() < 1e-5
+                        && (G::from(d.array()) - q).length() < 1e-6
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn cones_hold_their_pixels() {
+        for camera in cameras() {
+            let view = View::new(&camera, [64, 48], 0.5);
+            for (x, y) in [(4.0, 4.0), (32.0, 24.0), (60.0, 44.0), (4.0, 24.0)] {
+                let (slope, constant) = view.cone(x, y, 4.0f32);
+                let (o, d) = view.split(view.ray(x, y));
+                let mut widest = 0.0f32;
+                for (dx, dy) in [
+                    (-4.0, -4.0),
+                    (4.0, -4.0),
+                    (-4.0, 4.0),
+                    (4.0, 4.0),
+                    (0.0, 4.0),
+                    (1.5, -2.0),
+                ] {
+                    let (p, q) = view.split(view.ray(x + dx, y + dy));
+                    for t in [0.1, 1.0, 7.0] {
+                        let axis = G::from(o.array()) + G::from(d.array()) * t;
+                        let side = (G::from(p.array()) + G::from(q.array()) * t - axis).length();
+                        assert!(
+                            side <= (slope * t + constant) * 1.0001 + 1e-6,
+                            "at ({x}, {y})"
+                        );
+                        widest = widest.max(side / (slope * t + constant));
+                    }
+                }
+                assert!(widest > 0.95, "the cone is wider than it need be: {widest}");
+            }
+        }
+    }
+
+    #[test]
+    fn rays_leave_and_enter_the_box() {
+        let bounds = Aabb::new([-1.0, f64::NEG_INFINITY, -2.0], [1.0, 0.5, 0.25]);
+        let region = Region::new(&bounds);
+        let outside = |p: G| {
+            let mut far = 0.0f32;
+            for k in 0..3 {
+                far = far.max(region.min[k] - p[k]).max(p[k] - region.max[k]);
+            }
+            far
+        };
+        let mut finite = 0;
+        for i in 0..2000 {
+            let h = |k: i32| ((i * 7919 + k * 104_729) % 2003) as f32 / 1001.5 - 1.0;
+            let o = G::new(h(1), h(2), h(3)) * 4.0;
+            let Some(d) = G::new(h(4), h(5), h(6)).try_normalize() else {
+                continue;
+            };
+            let (slope, constant) = (0.1 * h(7).abs(), 0.05 * h(8).abs());
+            let (a, b) = (v3(o.x, o.y, o.z), v3(d.x, d.y, d.z));
+            let (start, end) = (
+                region.enter(a, b, slope, constant),
+                region.leave(a, b, slope, constant),
+            );
+            finite += u32::from(end.is_finite());
+            for k in 0..200 {
+                let t = 0.1 * k as f32;
+                if t < start * 0.999 || t > end * 1.001 + 1e-4 {
+                    assert!(
+                        outside(o + d * t) > slope * t + constant - 1e-4,
+                        "t {t}, {start} to {end}"
+                    );
+                }
+            }
+        }
+        assert!(finite > 1500);
+    }
+}
