@@ -125,7 +125,7 @@ fn run_values(level: Level, tape: Tape<'_>, lanes: &mut [Lane], n: usize) {
 
 #[inline(never)]
 fn run_gradients(level: Level, tape: Tape<'_>, lanes: &mut [Lane], n: usize) {
-    zeroset_number::at_level!(@avx2 level, s => run::<_, Dual<Lanes<_>>>(s, tape, lanes, n))
+    zeroset_number::at_level!(level, s => run::<_, Dual<Lanes<_>>>(s, tape, lanes, n))
 }
 
 #[inline(always)]

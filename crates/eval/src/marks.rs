@@ -73,7 +73,7 @@ pub fn marks<S: Simd>(s: S, tape: Tape<'_>, w: &mut Workspace, n: usize) {
 
 #[inline(never)]
 fn run_marks(level: Level, tape: Tape<'_>, w: &mut Workspace, n: usize) {
-    zeroset_number::at_level!(@avx2 level, s => run(s, tape, w, n))
+    zeroset_number::at_level!(level, s => run(s, tape, w, n))
 }
 
 #[inline(always)]

@@ -2,7 +2,7 @@
 
 use crate::error::GpuError;
 use wgpu::BufferUsages;
-use zeroset_scene::film::Plane;
+use zeroset_scene::accumulator::Sum;
 use zeroset_shader::Job;
 use zeroset_shader::entry::{Binding, COUNTERS};
 use zeroset_shader::layout::{Frame, LightSum, Sample, SurfaceSum};
@@ -31,10 +31,10 @@ pub(crate) const COUNTER_BYTES: u64 = 4 * COUNTERS as u64;
 
 impl Sizes {
     /// `notes`: bytes for the notes of rays that are traced in turns, else 0.
-    pub(crate) fn new(frame: &Frame, planes: &[Plane], notes: u64) -> Sizes {
+    pub(crate) fn new(frame: &Frame, sums: &[Sum], notes: u64) -> Sizes {
         let [_, stored, _, given] = frame.band.map(u64::from);
         let width = u64::from(frame.size[0]);
-        let numbers: usize = planes.iter().map(|p| p.channels()).sum();
+        let numbers: usize = sums.iter().map(|s| s.channels()).sum();
         let planes = 4 * numbers as u64 * width * given;
         Sizes {
             cones: notes.max(16 * u64::from(frame.cones())),
@@ -94,8 +94,8 @@ pub(crate) struct Room {
 }
 
 impl Room {
-    fn fits(&self, job: &Job, first: u32, rows: u32, planes: &[Plane]) -> bool {
-        let sizes = Sizes::new(&job.band(first, rows, planes), planes, self.notes);
+    fn fits(&self, job: &Job, first: u32, rows: u32, sums: &[Sum]) -> bool {
+        let sizes = Sizes::new(&job.band(first, rows, sums, 0), sums, self.notes);
         sizes.total() <= self.budget && sizes.largest() <= self.binding
     }
 
@@ -107,19 +107,19 @@ impl Room {
         &self,
         job: &Job,
         first: u32,
-        planes: &[Plane],
+        sums: &[Sum],
         adapter: &str,
     ) -> Result<u32, GpuError> {
         let left = job.frame.size[1] - first;
         let most = left.min(self.rows.max(1));
-        if self.fits(job, first, most, planes) {
+        if self.fits(job, first, most, sums) {
             return Ok(most);
         }
         // rows that fit and rows that do not
         let (mut good, mut bad) = (0, most);
         while bad - good > 1 {
             let middle = good + (bad - good) / 2;
-            if self.fits(job, first, middle, planes) {
+            if self.fits(job, first, middle, sums) {
                 good = middle;
             } else {
                 bad = middle;
@@ -128,7 +128,7 @@ impl Room {
         match good {
             0 => Err(GpuError::TooLarge {
                 what: "one row of pixels",
-                bytes: Sizes::new(&job.band(first, 1, planes), planes, self.notes).total(),
+                bytes: Sizes::new(&job.band(first, 1, sums, 0), sums, self.notes).total(),
                 adapter: adapter.to_owned(),
                 limit: self.binding.min(self.budget),
             }),
@@ -155,9 +155,9 @@ mod tests {
         Job {
             source: Arc::from(""),
             frame,
-            params: Vec::new(),
+            params: Arc::default(),
             code: Arc::from([0]),
-            table: Vec::new(),
+            table: Arc::default(),
             registers: 0,
             in_turns: false,
             turns: Turns::default(),
@@ -184,7 +184,7 @@ mod tests {
                     0,
                 );
                 while first < size[1] {
-                    let rows = match room.band(&job, first, &Plane::ALL, "a") {
+                    let rows = match room.band(&job, first, &Sum::ALL, "a") {
                         Ok(rows) => rows,
                         Err(error) => {
                             assert!(size[0] == 8000, "{size:?}: {error}");
@@ -192,8 +192,8 @@ mod tests {
                         }
                     };
                     assert!(rows > 0 && first + rows <= size[1]);
-                    let frame = job.band(first, rows, &Plane::ALL);
-                    let sizes = Sizes::new(&frame, &Plane::ALL, 0);
+                    let frame = job.band(first, rows, &Sum::ALL, 0);
+                    let sizes = Sizes::new(&frame, &Sum::ALL, 0);
                     assert!(sizes.total() <= budget && sizes.largest() <= binding);
                     let [from, stored, given, count] = frame.band;
                     assert!(from <= given && from + stored >= given + count);
@@ -215,7 +215,7 @@ mod tests {
             rows: 100,
             notes: 0,
         };
-        let error = room.band(&job([1 << 20, 4], 0), 0, &Plane::ALL, "card");
+        let error = room.band(&job([1 << 20, 4], 0), 0, &Sum::ALL, "card");
         assert!(matches!(error, Err(GpuError::TooLarge { .. })), "{error:?}");
     }
 
@@ -227,7 +227,7 @@ mod tests {
             rows: 48,
             notes: 0,
         };
-        assert_eq!(room.band(&job([64, 100], 1), 0, &Plane::ALL, "a"), Ok(48));
-        assert_eq!(room.band(&job([64, 100], 1), 96, &Plane::ALL, "a"), Ok(4));
+        assert_eq!(room.band(&job([64, 100], 1), 0, &Sum::ALL, "a"), Ok(48));
+        assert_eq!(room.band(&job([64, 100], 1), 96, &Sum::ALL, "a"), Ok(4));
     }
 }

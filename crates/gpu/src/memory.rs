@@ -7,7 +7,6 @@ use crate::pipeline::{Layouts, STAGES};
 use std::num::NonZeroU64;
 use std::sync::Arc;
 use wgpu::{BindGroup, BindGroupEntry, BindingResource, Buffer, BufferBinding, BufferUsages};
-use zeroset_scene::film::{Film, Plane};
 use zeroset_shader::Job;
 use zeroset_shader::entry::{Binding, COUNTERS, ENTRIES, UNIFORM_NUMBERS, UNIFORM_ROWS};
 use zeroset_shader::layout::{Frame, Tile};
@@ -23,7 +22,7 @@ pub(crate) struct Memory {
     groups: Option<[BindGroup; STAGES]>,
     /// What the buffers hold: images make the table large.
     code: Option<Arc<[u32]>>,
-    table: Vec<[f32; 4]>,
+    table: Arc<[[f32; 4]]>,
 }
 
 impl Memory {
@@ -56,7 +55,7 @@ impl Memory {
                 (*slot, self.groups) = (None, None);
                 match binding {
                     Binding::Code => self.code = None,
-                    Binding::Table => self.table.clear(),
+                    Binding::Table => self.table = Arc::default(),
                     _ => {}
                 }
                 *slot = Some(gpu.buffer("picture", bytes, usage)?);
@@ -127,12 +126,12 @@ impl Memory {
         if !has_code {
             put(Binding::Code, bytemuck::cast_slice(&job.code));
         }
-        if self.table != job.table {
+        if !Arc::ptr_eq(&self.table, &job.table) && self.table != job.table {
             put(Binding::Table, bytemuck::cast_slice(&job.table));
             if job.table.len() <= UNIFORM_ROWS {
                 put(Binding::Rows, bytemuck::cast_slice(&job.table));
             }
-            self.table.clone_from(&job.table);
+            self.table = Arc::clone(&job.table);
         }
         self.code = Some(Arc::clone(&job.code));
     }
@@ -153,19 +152,10 @@ impl Memory {
 /// The counters, as shaders write them.
 pub(crate) type Counters = [u32; COUNTERS as usize];
 
-/// Copies a band from mapped bytes into the film, and returns the counters behind it.
-pub(crate) fn unpack(bytes: &[u8], frame: &Frame, planes: &[Plane], film: &mut Film) -> Counters {
-    let [_, _, first, rows] = frame.band.map(|n| n as usize);
-    let width = frame.size[0] as usize;
-    let mut at = 0;
-    for &plane in planes {
-        let row = width * plane.channels();
-        let numbers = &mut film.plane_mut(plane)[first * row..(first + rows) * row];
-        let target: &mut [u8] = bytemuck::cast_slice_mut(numbers);
-        target.copy_from_slice(&bytes[at..at + target.len()]);
-        at += target.len();
-    }
-    counters(&bytes[at..])
+/// What bytes of finished rows hold: the numbers of the sums, and the counters.
+pub(crate) fn unpack(bytes: &[u8], sums: u64) -> (Vec<f32>, Counters) {
+    let (numbers, rest) = bytes.split_at(sums as usize);
+    (bytemuck::pod_collect_to_vec(numbers), counters(rest))
 }
 
 /// The counters that bytes begin with.

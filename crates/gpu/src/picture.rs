@@ -1,4 +1,4 @@
-//! One picture: band after band, stage after stage.
+//! Samples of a picture: band after band, stage after stage.
 
 use crate::band::{COUNTER_BYTES, LEAST_BUDGET, Room, Sizes};
 use crate::device::Gpu;
@@ -8,10 +8,11 @@ use crate::memory::{Counters, Memory, counters, unpack};
 use crate::pace::{Area, Costs, Cutter, LIMIT};
 use crate::pipeline::{Layouts, Pipelines, STAGES, Set};
 use crate::timing::{Stage, Timings};
+use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 use wgpu::MapMode;
-use zeroset_scene::film::{Film, Plane};
+use zeroset_scene::accumulator::{Accumulator, Sum};
 use zeroset_scene::render::{Evaluations, Observer, RenderError, Statistics};
 use zeroset_shader::Job;
 use zeroset_shader::entry::{Binding, CONE_SIDES, CUT_SHORT, WAITING, WORKGROUP};
@@ -38,11 +39,14 @@ pub(crate) struct Progress<'a> {
 }
 
 impl<'a> Progress<'a> {
-    pub(crate) fn new(observer: &'a dyn Observer, job: &Job) -> Progress<'a> {
-        let [width, height] = job.frame.size.map(u64::from);
+    pub(crate) fn new(
+        observer: &'a dyn Observer,
+        [width, height]: [u32; 2],
+        samples: u32,
+    ) -> Progress<'a> {
         Progress {
             observer,
-            total: width * height * u64::from(job.samples()),
+            total: u64::from(width) * u64::from(height) * u64::from(samples),
             told: 0,
             done: 0.0,
         }
@@ -66,11 +70,9 @@ impl<'a> Progress<'a> {
         }
     }
 
-    /// All rays of the rows before this one are done.
-    fn reach(&mut self, row: u32, job: &Job) {
-        let rays = u64::from(row) * u64::from(job.frame.size[0]) * u64::from(job.samples());
-        let rays = rays as f64 - self.done;
-        self.advance(rays);
+    /// All rays of this share of the rows are done.
+    fn reach(&mut self, share: f64) {
+        self.advance(share * self.total as f64 - self.done);
     }
 
     fn check(&self) -> Result<(), GpuError> {
@@ -92,35 +94,17 @@ pub(crate) struct Bench<'a> {
     pub(crate) budget: u64,
 }
 
-impl Bench<'_> {
-    /// Renders into a film of the job's size, as far as it has planes.
-    pub(crate) fn render(
-        &mut self,
-        job: &Job,
-        film: &mut Film,
-        progress: &mut Progress<'_>,
-        timings: &mut Timings,
-    ) -> Result<Statistics, GpuError> {
-        let planes: Vec<Plane> = Plane::ALL.into_iter().filter(|p| film.has(*p)).collect();
-        let (mut sums, mut first) = ([0; 8], 0);
-        timings.by_timestamps = self.gpu.tick.is_some();
-        while first < job.frame.size[1] {
-            let room = Room {
-                budget: self.budget.max(LEAST_BUDGET),
-                binding: self.gpu.largest_binding(),
-                rows: self.most_rows(job),
-                notes: self.notes(job),
-            };
-            let rows = room.band(job, first, &planes, &self.gpu.info().title())?;
-            let counters = self.band(job, [first, rows], &planes, film, progress, timings)?;
-            let (pairs, _) = counters.as_chunks::<2>();
-            for (sum, [low, high]) in sums.iter_mut().zip(pairs) {
-                *sum += u64::from(*low) | u64::from(*high) << 32;
-            }
-            first += rows;
-            timings.bands += 1;
-            progress.reach(first, job);
-        }
+/// How far a picture is: what is done stays done where it must be begun anew.
+#[derive(Debug, Default)]
+pub(crate) struct Course {
+    /// Rows whose sums the accumulator has.
+    rows: u32,
+    /// Sums of the counters of these rows.
+    counted: [u64; 8],
+}
+
+impl Course {
+    pub(crate) fn statistics(&self) -> Statistics {
         let [
             prepass,
             march,
@@ -130,8 +114,8 @@ impl Bench<'_> {
             material,
             rays,
             hits,
-        ] = sums;
-        Ok(Statistics {
+        ] = self.counted;
+        Statistics {
             rays,
             hits,
             evaluations: Evaluations {
@@ -144,7 +128,45 @@ impl Bench<'_> {
             },
             seconds: 0.0,
             threads: 1,
-        })
+        }
+    }
+}
+
+impl Bench<'_> {
+    /// Adds samples to the sums of a picture of the job's size, from the row on that it has reached.
+    pub(crate) fn render(
+        &mut self,
+        job: &Job,
+        samples: &Range<u32>,
+        into: &mut Accumulator,
+        course: &mut Course,
+        progress: &mut Progress<'_>,
+        timings: &mut Timings,
+    ) -> Result<(), GpuError> {
+        let sums: Vec<Sum> = into.kept().collect();
+        timings.by_timestamps = self.gpu.tick.is_some();
+        let height = job.frame.size[1];
+        while course.rows < height {
+            let first = course.rows;
+            let room = Room {
+                budget: self.budget.max(LEAST_BUDGET),
+                binding: self.gpu.largest_binding(),
+                rows: self.most_rows(job),
+                notes: self.notes(job),
+            };
+            let rows = room.band(job, first, &sums, &self.gpu.info().title())?;
+            let (numbers, counters) =
+                self.band(job, [first, rows], samples, &sums, progress, timings)?;
+            into.add_rows(first, rows, &numbers);
+            let (pairs, _) = counters.as_chunks::<2>();
+            for (sum, [low, high]) in course.counted.iter_mut().zip(pairs) {
+                *sum += u64::from(*low) | u64::from(*high) << 32;
+            }
+            course.rows += rows;
+            timings.bands += 1;
+            progress.reach(f64::from(course.rows) / f64::from(height));
+        }
+        Ok(())
     }
 
     /// Bytes for the notes of rays, where they are traced in turns.
@@ -177,19 +199,19 @@ impl Bench<'_> {
         }
     }
 
-    /// Renders `rows`: the first and how many.
+    /// Renders `rows`: the first and how many. Gives the numbers of their sums.
     fn band(
         &mut self,
         job: &Job,
         rows: [u32; 2],
-        planes: &[Plane],
-        film: &mut Film,
+        samples: &Range<u32>,
+        sums: &[Sum],
         progress: &mut Progress<'_>,
         timings: &mut Timings,
-    ) -> Result<Counters, GpuError> {
-        let frame = job.band(rows[0], rows[1], planes);
+    ) -> Result<(Vec<f32>, Counters), GpuError> {
+        let frame = job.band(rows[0], rows[1], sums, samples.start);
         let notes = self.notes(job);
-        let sizes = Sizes::new(&frame, planes, notes);
+        let sizes = Sizes::new(&frame, sums, notes);
         progress.check()?;
         self.memory.fill(
             self.gpu,
@@ -240,12 +262,12 @@ impl Bench<'_> {
             run.cones(Stage::ConesWide, &frame, stored, CONE_SIDES[0])?;
             run.cones(Stage::ConesNarrow, &frame, stored, CONE_SIDES[1])?;
         }
-        for sample in 0..job.samples() {
+        for sample in samples.clone() {
             if job.in_turns {
                 run.turns(stored, sample)?;
             } else {
                 run.tiles(Stage::Trace, stored, sample)?;
-                if !self.set.is_proven && sample + 1 < job.samples() {
+                if !self.set.is_proven && sample + 1 < samples.end {
                     // the other rays of a scene that needs turns need not be traced
                     check(run.gpu, &run.counted()?)?;
                 }
@@ -253,22 +275,20 @@ impl Bench<'_> {
             run.tiles(Stage::Gather, given, sample)?;
         }
         run.tiles(Stage::Develop, given, 0)?;
-        let counters = self.read(&frame, &sizes, planes, film, progress, timings)?;
+        let (numbers, counters) = self.read(&frame, &sizes, progress, timings)?;
         check(self.gpu, &counters)?;
         self.set.is_proven = true;
-        Ok(counters)
+        Ok((numbers, counters))
     }
 
-    /// Reads the finished planes of a band.
+    /// Reads the finished sums of a band.
     fn read(
         &mut self,
         frame: &Frame,
         sizes: &Sizes,
-        planes: &[Plane],
-        film: &mut Film,
         progress: &mut Progress<'_>,
         timings: &mut Timings,
-    ) -> Result<Counters, GpuError> {
+    ) -> Result<(Vec<f32>, Counters), GpuError> {
         let of = |binding| self.memory.buffer(binding);
         let (Some(made), Some(counters), Some(read)) = (
             of(Binding::Planes),
@@ -295,14 +315,14 @@ impl Bench<'_> {
         read.map_async(MapMode::Read, .., |_| {});
         self.flight.finish(&mut notes)?;
         let mapped = read.get_mapped_range(..sizes.read);
-        let counters = match &mapped {
-            Ok(view) => unpack(view, frame, planes, film),
+        let found = match &mapped {
+            Ok(view) => unpack(view, sizes.planes),
             Err(error) => return Err(self.without(&error.to_string())),
         };
         drop(mapped);
         read.unmap();
         self.memory.is_mapped = false;
-        Ok(counters)
+        Ok(found)
     }
 
     fn without(&self, reason: &str) -> GpuError {

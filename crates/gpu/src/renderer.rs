@@ -7,20 +7,22 @@ use crate::error::GpuError;
 use crate::fault::Faults;
 use crate::flight::Flight;
 use crate::memory::Memory;
-use crate::picture::{Bench, Progress};
+use crate::picture::{Bench, Course, Progress};
 use crate::pipeline::{Cache, Layouts};
 use crate::timing::Timings;
+use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
-use zeroset_scene::film::{Film, Plane};
-use zeroset_scene::render::{Frame, Observer, RenderError, Renderer, Statistics};
+use zeroset_scene::accumulator::Accumulator;
+use zeroset_scene::camera::Camera;
+use zeroset_scene::render::{Observer, Prepared, RenderError, Renderer, Statistics};
 use zeroset_scene::scene::Scene;
 use zeroset_shader::{FieldForm, Job, Shaders};
 
 /// The GPU's renderer.
 ///
-/// Shaders, buffers and what is known about their speed are kept from picture to picture; pictures of several threads are
-/// rendered one after the other. Where the device ends loops early, rays are traced in turns; where memory runs out, a picture
+/// Shaders, buffers and what is known about their speed are kept from picture to picture, and shared by clones; pictures of
+/// several threads are rendered one after the other. Where the device ends loops early, rays are traced in turns; where memory runs out, a picture
 /// is rendered in smaller bands; where the device is lost, it is opened anew, once a picture. What remains is an error, and the renderer can be asked again.
 ///
 /// ```
@@ -38,11 +40,12 @@ use zeroset_shader::{FieldForm, Job, Shaders};
 /// # Ok(())
 /// # }
 /// ```
+#[derive(Clone)]
 pub struct GpuRenderer {
     choice: Choice,
     faults: Faults,
     adapter: AdapterInfo,
-    state: Mutex<State>,
+    state: Arc<Mutex<State>>,
 }
 
 struct State {
@@ -127,7 +130,7 @@ impl GpuRenderer {
             choice: choice.clone(),
             faults,
             adapter,
-            state: Mutex::new(state),
+            state: Arc::new(Mutex::new(state)),
         })
     }
 
@@ -156,37 +159,43 @@ impl GpuRenderer {
         self.state().timings.clone()
     }
 
-    /// Compiles a scene, so that it can be rendered more than once.
+    /// What a scene is for the GPU.
     ///
     /// # Errors
     /// See [`RenderError`].
-    pub fn prepare(&self, scene: &Scene) -> Result<Job, RenderError> {
+    pub fn job(&self, scene: &Scene) -> Result<Job, RenderError> {
         self.state().shaders.prepare(scene)
     }
 
-    /// Renders into a film that is there already, as far as it has planes. One of another size than the job's is replaced.
+    /// Adds samples of a job to the sums of a picture of the job's size.
     ///
     /// # Errors
-    /// See [`GpuError`]; the film is then unfinished.
-    pub fn render_into(
+    /// See [`GpuError`]; the sums are then good for nothing.
+    pub fn sample(
         &self,
         job: &Job,
-        film: &mut Film,
+        samples: Range<u32>,
+        into: &mut Accumulator,
         observer: &dyn Observer,
     ) -> Result<Statistics, GpuError> {
-        let [width, height] = job.frame.size;
-        if [film.width(), film.height()] != [width, height] {
-            let planes: Vec<Plane> = Plane::ALL.into_iter().filter(|p| film.has(*p)).collect();
-            *film = Film::with(width, height, &planes);
-        }
         let began = Instant::now();
         let mut state = self.state();
-        let mut timings = Timings::new(self.adapter.clone(), [width, height], job.samples());
-        let mut progress = Progress::new(observer, job);
+        let (size, count) = (job.frame.size, samples.len() as u32);
+        let mut timings = Timings::new(self.adapter.clone(), size, count);
+        let mut progress = Progress::new(observer, size, count);
+        let mut course = Course::default();
         let mut was_lost = false;
-        let statistics = loop {
-            let failure = match self.attempt(&mut state, job, film, &mut progress, &mut timings) {
-                Ok(statistics) => break statistics,
+        loop {
+            let mut errand = Errand {
+                job,
+                samples: &samples,
+                into,
+                course: &mut course,
+                progress: &mut progress,
+                timings: &mut timings,
+            };
+            let failure = match self.attempt(&mut state, &mut errand) {
+                Ok(()) => break,
                 Err(failure) => failure,
             };
             match &failure {
@@ -222,24 +231,27 @@ impl GpuRenderer {
             }
             progress.restart();
             timings.retries += 1;
-        };
+        }
+        into.count(count);
         timings.wall = began.elapsed().as_secs_f64();
         let seconds = timings.wall;
         state.timings = Some(timings);
         Ok(Statistics {
             seconds,
-            ..statistics
+            ..course.statistics()
         })
     }
 
-    fn attempt(
-        &self,
-        state: &mut State,
-        job: &Job,
-        film: &mut Film,
-        progress: &mut Progress<'_>,
-        timings: &mut Timings,
-    ) -> Result<Statistics, GpuError> {
+    fn attempt(&self, state: &mut State, errand: &mut Errand<'_, '_>) -> Result<(), GpuError> {
+        let Errand {
+            job,
+            samples,
+            into,
+            course,
+            progress,
+            timings,
+        } = errand;
+        let job: &Job = job;
         let opened = match &mut state.opened {
             Some(opened) => opened,
             none => {
@@ -247,7 +259,7 @@ impl GpuRenderer {
                 none.insert(Opened::new(Arc::new(gpu))?)
             }
         };
-        opened.flight.drain(progress)?;
+        opened.flight.drain(&mut **progress)?;
         let turned = if opened.needs_turns(job) {
             state.shaders.in_turns(job)
         } else {
@@ -273,9 +285,9 @@ impl GpuRenderer {
             set,
             budget: state.budget,
         };
-        let statistics = bench.render(job, film, progress, timings)?;
+        bench.render(job, samples, into, course, progress, timings)?;
         timings.submissions += opened.flight.submissions - before;
-        Ok(statistics)
+        Ok(())
     }
 
     fn state(&self) -> MutexGuard<'_, State> {
@@ -283,17 +295,48 @@ impl GpuRenderer {
     }
 }
 
+/// What is to be sampled, and how far that is.
+struct Errand<'a, 'o> {
+    job: &'a Job,
+    samples: &'a Range<u32>,
+    into: &'a mut Accumulator,
+    course: &'a mut Course,
+    progress: &'a mut Progress<'o>,
+    timings: &'a mut Timings,
+}
+
 impl Renderer for GpuRenderer {
-    fn render_planes(
-        &self,
-        scene: &Scene,
-        planes: &[Plane],
+    fn name(&self) -> String {
+        self.adapter.title()
+    }
+
+    fn prepare(&self, scene: Arc<Scene>) -> Result<Box<dyn Prepared>, RenderError> {
+        let job = self.job(&scene)?;
+        let renderer = self.clone();
+        Ok(Box::new(PreparedScene { renderer, job }))
+    }
+}
+
+/// A scene that is ready to be rendered on the GPU.
+struct PreparedScene {
+    renderer: GpuRenderer,
+    job: Job,
+}
+
+impl Prepared for PreparedScene {
+    fn update(&mut self, scene: Arc<Scene>) -> Result<(), RenderError> {
+        self.job = self.renderer.job(&scene)?;
+        Ok(())
+    }
+
+    fn sample(
+        &mut self,
+        camera: &Camera,
+        samples: Range<u32>,
+        into: &mut Accumulator,
         observer: &dyn Observer,
-    ) -> Result<Frame, RenderError> {
-        let job = self.prepare(scene)?;
-        let [width, height] = scene.settings.size;
-        let mut film = Film::with(width, height, planes);
-        let statistics = self.render_into(&job, &mut film, observer)?;
-        Ok(Frame { film, statistics })
+    ) -> Result<Statistics, RenderError> {
+        let job = self.job.seen(camera, into.size(), into.antialias());
+        Ok(self.renderer.sample(&job, samples, into, observer)?)
     }
 }

@@ -106,12 +106,14 @@ fn who_cancels_does_not_wait_for_the_compiler() {
         let _ = writeln!(text, "show(sphere(0.1).move(({}, {}, 0)))", i % 50, i / 50);
     }
     let scene = scene(&text);
-    let job = renderer.prepare(&scene).expect("a job");
+    let job = renderer.job(&scene).expect("a job");
     for after in [200, 1500, 4000] {
         let after = Duration::from_millis(after);
         let patience = Patience(Instant::now(), after);
-        let mut film = zeroset_scene::film::Film::new(96, 64);
-        match renderer.render_into(&job, &mut film, &patience) {
+        let planes = [zeroset_scene::film::Plane::Colour];
+        let mut sums = Accumulator::new([96, 64], scene.settings.antialias, &planes);
+        let samples = 0..sums.wanted();
+        match renderer.sample(&job, samples, &mut sums, &patience) {
             Err(GpuError::Scene(RenderError::Cancelled)) => {}
             // a fast compiler
             Ok(_) => return,

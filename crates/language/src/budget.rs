@@ -43,6 +43,14 @@ impl Budget {
         }
     }
 
+    /// The same bytes held, with all the time again.
+    pub(crate) fn again(&self, limits: &Limits) -> Budget {
+        Budget {
+            held: self.held,
+            ..Budget::new(limits)
+        }
+    }
+
     /// When loading began.
     pub(crate) fn start(&self) -> Instant {
         self.start

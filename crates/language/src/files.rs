@@ -1,7 +1,9 @@
 //! Files of a scene: only those below its own folder, and only ordinary ones of a limited size.
 
+use crate::assets::Assets;
 use crate::budget::{Budget, Spent};
-use std::collections::HashMap;
+use crate::images;
+use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::io::Read;
 use std::path::{Component, Path, PathBuf};
@@ -55,20 +57,47 @@ pub(crate) struct Files {
     limit: u64,
     /// What loading may still take.
     pub(crate) budget: Budget,
+    pub(crate) cache: Cache,
+    /// Images that are charged already.
+    charged: HashSet<PathBuf>,
+}
+
+/// What was read of a scene's files: it stays good for as long as none of them changes.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Cache {
+    /// Where files really are, by their paths.
+    places: HashMap<PathBuf, PathBuf>,
     /// Files by where they really are, so that each is read once under whatever names.
     bytes: HashMap<PathBuf, Arc<[u8]>>,
     images: HashMap<PathBuf, Arc<Image>>,
+    pub(crate) assets: Assets,
 }
 
 impl Files {
-    pub(crate) fn new(root: Option<PathBuf>, limit: u64, budget: Budget) -> Files {
+    pub(crate) fn new(root: Option<PathBuf>, limit: u64, budget: Budget, assets: &Assets) -> Files {
+        let cache = Cache {
+            assets: assets.clone(),
+            ..Cache::default()
+        };
         Files {
             root,
             loaded: Vec::new(),
             limit,
             budget,
-            bytes: HashMap::new(),
-            images: HashMap::new(),
+            cache,
+            charged: HashSet::new(),
+        }
+    }
+
+    /// The same folder, where these files were asked for and this was read before.
+    pub(crate) fn again(&self, limit: u64, budget: Budget, cache: Cache) -> Files {
+        Files {
+            root: self.root.clone(),
+            loaded: self.loaded.clone(),
+            limit,
+            budget,
+            cache,
+            charged: HashSet::new(),
         }
     }
 
@@ -116,12 +145,16 @@ impl Files {
             }
             self.loaded.push(path.clone());
         }
+        if let Some(real) = self.cache.places.get(&path) {
+            return Ok(real.clone());
+        }
         // a link may point out of the folder: what counts is where the path ends
         let missing = |e: std::io::Error| unreadable(name, &e);
         let real = fs::canonicalize(&path).map_err(missing)?;
         if !real.starts_with(fs::canonicalize(&root).map_err(missing)?) {
             return Err(FileError::Outside(name.to_string()));
         }
+        self.cache.places.insert(path, real.clone());
         Ok(real)
     }
 
@@ -138,8 +171,13 @@ impl Files {
         flag: &'static str,
     ) -> Result<Arc<[u8]>, FileError> {
         let real = self.find(name)?;
-        if let Some(bytes) = self.bytes.get(&real) {
-            return Ok(bytes.clone());
+        if let Some(bytes) = self.cache.bytes.get(&real) {
+            let bytes = bytes.clone();
+            if self.charged.insert(real) {
+                self.budget
+                    .hold(bytes.len() as u64, || format!("\"{name}\""))?;
+            }
+            return Ok(bytes);
         }
         self.budget.check_clock()?;
         let bytes = read_ordinary(&real, name, limit, flag, &mut self.budget)?;
@@ -147,7 +185,8 @@ impl Files {
         let twice = 2 * bytes.len() as u64;
         self.budget.borrow(twice, || format!("\"{name}\""))?;
         let bytes: Arc<[u8]> = bytes.into();
-        self.bytes.insert(real, bytes.clone());
+        self.charged.insert(real.clone());
+        self.cache.bytes.insert(real, bytes.clone());
         Ok(bytes)
     }
 
@@ -163,19 +202,25 @@ impl Files {
         text(bytes, name)
     }
 
-    /// An image of a file below the folder, decoded once.
+    /// An image of a file below the folder, read once.
     pub(crate) fn image(
         &mut self,
         name: &str,
-        decode: impl FnOnce(&mut Files, &Path) -> Result<Image, String>,
+        read: impl FnOnce(&mut Files, &Path) -> Result<Arc<Image>, String>,
     ) -> Result<Arc<Image>, String> {
         let real = self.find(name).map_err(|e| e.to_string())?;
-        if let Some(image) = self.images.get(&real) {
-            return Ok(image.clone());
-        }
         self.budget.check_clock().map_err(|e| e.to_string())?;
-        let image = Arc::new(decode(self, &real)?);
-        self.images.insert(real, image.clone());
+        let image = match self.cache.images.get(&real) {
+            Some(image) => image.clone(),
+            None => read(self, &real)?,
+        };
+        if self.charged.insert(real.clone()) {
+            let size = [image.width, image.height];
+            (self.budget)
+                .hold(images::kept(size), || images::what(name, size))
+                .map_err(|e| e.to_string())?;
+        }
+        self.cache.images.insert(real, image.clone());
         Ok(image)
     }
 }

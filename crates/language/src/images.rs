@@ -1,61 +1,153 @@
-//! Images that surfaces show.
+//! Images that surfaces show: PNG and JPEG.
 
+use crate::budget::Budget;
 use crate::files::{Files, read_ordinary};
 use crate::limits::Limits;
 use glam::Vec3;
-use image::{DynamicImage, ImageDecoder, ImageReader, Limits as DecodeLimits};
 use std::io::Cursor;
 use std::path::Path;
 use std::sync::{Arc, LazyLock};
 use zeroset_scene::colour;
 use zeroset_scene::material::Image;
+use zune_core::bytestream::ZCursor;
+use zune_core::colorspace::ColorSpace;
+use zune_core::options::DecoderOptions;
+use zune_jpeg::JpegDecoder;
 
 /// An image from the scene's folder, decoded once however often it is asked for.
 ///
 /// # Errors
 /// What is wrong with it, and what is allowed.
 pub(crate) fn load(files: &mut Files, name: &str, limits: &Limits) -> Result<Arc<Image>, String> {
-    files.image(name, |files, real| decode(files, real, name, limits))
+    files.image(name, |files, real| read(files, real, name, limits))
 }
 
-fn decode(files: &mut Files, real: &Path, name: &str, limits: &Limits) -> Result<Image, String> {
+fn read(files: &mut Files, real: &Path, name: &str, limits: &Limits) -> Result<Arc<Image>, String> {
     let text = |e: &dyn std::fmt::Display| e.to_string();
     // the file's own bytes are given back at the end
     let mut budget = files.budget;
     let bytes = read_ordinary(real, name, limits.image_bytes, "image_bytes", &mut budget)
         .map_err(|e| text(&e))?;
-    let bad = |e: &dyn std::fmt::Display| format!("\"{name}\" is no image that can be read: {e}");
-    let reader = || ImageReader::new(Cursor::new(&bytes)).with_guessed_format();
-    let decoder = reader().map_err(|e| bad(&e))?.into_decoder();
-    let decoder = decoder.map_err(|e| bad(&e))?;
-    let (width, height) = decoder.dimensions();
-    let pixels = u64::from(width) * u64::from(height);
-    if pixels == 0 || pixels > limits.image_pixels {
-        return Err(format!(
-            "\"{name}\" has {width}x{height} pixels, at most {} are allowed (limit `image_pixels`)",
-            limits.image_pixels
-        ));
-    }
-    // as it is decoded, what the decoder may keep meanwhile, and as it is kept
-    let decoded = decoder.total_bytes();
-    drop(decoder);
-    let kept = pixels * size_of::<Vec3>() as u64;
-    let what = || format!("\"{name}\", an image of {width}x{height} pixels,");
-    budget
-        .hold(2 * decoded + kept, what)
-        .map_err(|e| text(&e))?;
-    let mut allowed = DecodeLimits::default();
-    allowed.max_alloc = Some(2 * decoded + (1 << 20));
-    let mut reader = reader().map_err(|e| bad(&e))?;
-    reader.limits(allowed);
-    let pixels = linear(reader.decode().map_err(|e| bad(&e))?);
+    let room = Room {
+        name,
+        most: limits.image_pixels,
+    };
     let path = Files::normal(name).map_err(|e| text(&e))?;
-    files.budget.hold(kept, what).map_err(|e| text(&e))?;
-    Ok(Image {
-        path,
-        width,
-        height,
-        pixels,
+    files.cache.assets.image(&path, &bytes, || {
+        let decoded = if bytes.starts_with(b"\x89PNG") {
+            png(&bytes, &room, &mut budget)?
+        } else if bytes.starts_with(&[0xff, 0xd8, 0xff]) {
+            jpeg(&bytes, &room, &mut budget)?
+        } else {
+            return Err(room.bad(&"it begins neither like a PNG nor like a JPEG file"));
+        };
+        let [width, height] = decoded.size;
+        Ok(Image {
+            path: path.clone(),
+            width,
+            height,
+            pixels: decoded.linear(),
+        })
+    })
+}
+
+/// An image for messages.
+pub(crate) fn what(name: &str, [width, height]: [u32; 2]) -> String {
+    format!("\"{name}\", an image of {width}x{height} pixels,")
+}
+
+/// What an image may be, and how it is called in messages.
+struct Room<'a> {
+    name: &'a str,
+    /// Pixels.
+    most: u64,
+}
+
+impl Room<'_> {
+    fn bad(&self, e: &dyn std::fmt::Display) -> String {
+        format!("\"{}\" is no image that can be read: {e}", self.name)
+    }
+
+    /// Charges what decoding takes: the file's pixels, as much again for the decoder, and the linear colours.
+    fn charge(&self, size: [u32; 2], decoded: u64, budget: &mut Budget) -> Result<(), String> {
+        let [width, height] = size;
+        let pixels = u64::from(width) * u64::from(height);
+        if pixels == 0 || pixels > self.most {
+            return Err(format!(
+                "\"{}\" has {width}x{height} pixels, at most {} are allowed (limit `image_pixels`)",
+                self.name, self.most
+            ));
+        }
+        let bytes = decoded.saturating_mul(2).saturating_add(kept(size));
+        budget
+            .hold(bytes, || what(self.name, size))
+            .map_err(|e| e.to_string())
+    }
+}
+
+/// Bytes of an image as it is kept.
+pub(crate) fn kept([width, height]: [u32; 2]) -> u64 {
+    u64::from(width) * u64::from(height) * size_of::<Vec3>() as u64
+}
+
+/// Pixels as they come from a file: rows of bytes.
+struct Decoded {
+    size: [u32; 2],
+    bytes: Vec<u8>,
+    /// Numbers a pixel: grey, grey and opacity, three colours, three colours and opacity.
+    channels: usize,
+    /// Whether a number takes two bytes, the larger one first.
+    wide: bool,
+}
+
+fn png(bytes: &[u8], room: &Room<'_>, budget: &mut Budget) -> Result<Decoded, String> {
+    let mut decoder = png::Decoder::new(Cursor::new(bytes));
+    decoder.set_transformations(png::Transformations::EXPAND);
+    decoder.set_ignore_text_chunk(true);
+    decoder.set_ignore_iccp_chunk(true);
+    let header = decoder.read_header_info().map_err(|e| room.bad(&e))?;
+    let size = [header.width, header.height];
+    // what may come out of it: palettes and transparent colours become more channels
+    let most = u64::from(size[0]) * u64::from(size[1]) * 8;
+    room.charge(size, most, budget)?;
+    decoder.set_limits(png::Limits {
+        bytes: (2 * most + (1 << 20)) as usize,
+    });
+    let mut reader = decoder.read_info().map_err(|e| room.bad(&e))?;
+    let length = reader.output_buffer_size().filter(|n| *n as u64 <= most);
+    let length = length.ok_or_else(|| room.bad(&"its rows do not fit its size"))?;
+    let mut pixels = vec![0; length];
+    reader.next_frame(&mut pixels).map_err(|e| room.bad(&e))?;
+    let (colour, depth) = reader.output_color_type();
+    Ok(Decoded {
+        size,
+        bytes: pixels,
+        channels: colour.samples(),
+        wide: depth == png::BitDepth::Sixteen,
+    })
+}
+
+fn jpeg(bytes: &[u8], room: &Room<'_>, budget: &mut Budget) -> Result<Decoded, String> {
+    let options = DecoderOptions::default()
+        .set_strict_mode(false)
+        .set_max_width(usize::from(u16::MAX))
+        .set_max_height(usize::from(u16::MAX))
+        .jpeg_set_out_colorspace(ColorSpace::RGB);
+    let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
+    decoder.decode_headers().map_err(|e| room.bad(&e))?;
+    let size = decoder.dimensions().unwrap_or_default();
+    // a JPEG holds its size in 16 bits
+    let size = [size.0 as u32, size.1 as u32];
+    room.charge(size, u64::from(size[0]) * u64::from(size[1]) * 3, budget)?;
+    let pixels = decoder.decode().map_err(|e| room.bad(&e))?;
+    if pixels.len() as u64 != u64::from(size[0]) * u64::from(size[1]) * 3 {
+        return Err(room.bad(&"its rows do not fit its size"));
+    }
+    Ok(Decoded {
+        size,
+        bytes: pixels,
+        channels: 3,
+        wide: false,
     })
 }
 
@@ -66,20 +158,24 @@ static CHANNELS: LazyLock<Vec<f32>> = LazyLock::new(|| {
         .collect()
 });
 
-/// The pixels in linear colours, without the detour of a larger copy.
-fn linear(decoded: DynamicImage) -> Vec<Vec3> {
-    // 8 bits of all become 16 bits of all
-    let eight = |x: u8| CHANNELS[usize::from(x) * 257];
-    let sixteen = |x: u16| CHANNELS[usize::from(x)];
-    match decoded {
-        DynamicImage::ImageLuma8(i) => i.pixels().map(|p| Vec3::splat(eight(p.0[0]))).collect(),
-        DynamicImage::ImageLumaA8(i) => i.pixels().map(|p| Vec3::splat(eight(p.0[0]))).collect(),
-        DynamicImage::ImageRgb8(i) => (i.pixels()).map(|p| Vec3::from(p.0.map(eight))).collect(),
-        DynamicImage::ImageRgba8(i) => (i.pixels())
-            .map(|p| Vec3::new(eight(p.0[0]), eight(p.0[1]), eight(p.0[2])))
-            .collect(),
-        other => (other.into_rgb16().pixels())
-            .map(|p| Vec3::from(p.0.map(sixteen)))
-            .collect(),
+impl Decoded {
+    /// The pixels in linear colours. What is see-through counts as its colour.
+    fn linear(&self) -> Vec<Vec3> {
+        let width = if self.wide { 2 } else { 1 };
+        let number = |pixel: &[u8], k: usize| match pixel[k * width..][..width] {
+            [high, low] => CHANNELS[usize::from(u16::from_be_bytes([high, low]))],
+            // 8 bits of all become 16 bits of all
+            [x, ..] => CHANNELS[usize::from(x) * 257],
+            [] => 0.0,
+        };
+        (self.bytes.chunks_exact(self.channels * width))
+            .map(|pixel| {
+                if self.channels < 3 {
+                    Vec3::splat(number(pixel, 0))
+                } else {
+                    Vec3::new(number(pixel, 0), number(pixel, 1), number(pixel, 2))
+                }
+            })
+            .collect()
     }
 }

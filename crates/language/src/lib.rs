@@ -1,7 +1,9 @@
 //! Scene files: the Starlark language, its twin in JSON, loading, limits, reports with source spans, watching.
 
+pub mod assets;
 mod budget;
 pub mod colour;
+pub mod document;
 mod draft;
 mod files;
 pub mod framing;

@@ -120,6 +120,19 @@ impl Film {
         }
     }
 
+    /// A film of planes that are there already, each with as many numbers as it has pixels times channels.
+    pub(crate) fn from_planes([width, height]: [u32; 2], given: Vec<(Plane, Vec<f32>)>) -> Film {
+        let mut planes = vec![Vec::new(); Plane::ALL.len()];
+        for (plane, numbers) in given {
+            planes[plane as usize] = numbers;
+        }
+        Film {
+            width,
+            height,
+            planes,
+        }
+    }
+
     /// Whether the film has this plane. (One without pixels has none.)
     pub fn has(&self, plane: Plane) -> bool {
         !self.plane(plane).is_empty()

@@ -1,11 +1,24 @@
 //! What a renderer is: the CPU's and the GPU's implement the same trait.
 
+use crate::accumulator::Accumulator;
+use crate::camera::Camera;
 use crate::film::{Film, Plane};
 use crate::scene::Scene;
+use std::ops::Range;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A renderer.
-pub trait Renderer {
+pub trait Renderer: Send + Sync {
+    /// What it renders with, for people: such as "CPU, 8 threads", or the name of a GPU.
+    fn name(&self) -> String;
+
+    /// Makes a scene ready to be rendered: compiles its field, looks at its methods, brings its images to where they are needed.
+    ///
+    /// # Errors
+    /// See [`RenderError`].
+    fn prepare(&self, scene: Arc<Scene>) -> Result<Box<dyn Prepared>, RenderError>;
+
     /// Renders the scene at the size and with the methods that its settings state.
     ///
     /// # Errors
@@ -23,7 +36,38 @@ pub trait Renderer {
         scene: &Scene,
         planes: &[Plane],
         observer: &dyn Observer,
-    ) -> Result<Frame, RenderError>;
+    ) -> Result<Frame, RenderError> {
+        let scene = Arc::new(scene.clone());
+        let (camera, settings) = (scene.camera, scene.settings);
+        let mut sums = Accumulator::new(settings.size, settings.antialias, planes);
+        let samples = 0..sums.wanted();
+        let mut prepared = self.prepare(scene)?;
+        let statistics = prepared.sample(&camera, samples, &mut sums, observer)?;
+        let film = sums.into_film();
+        Ok(Frame { film, statistics })
+    }
+}
+
+/// A scene that a renderer made ready. It can be seen by any camera, in any size, as often as one likes.
+pub trait Prepared: Send {
+    /// Takes another scene, and keeps what both have in common: what is compiled, images, memory.
+    ///
+    /// # Errors
+    /// See [`RenderError`]; the scene before is then still there.
+    fn update(&mut self, scene: Arc<Scene>) -> Result<(), RenderError>;
+
+    /// Adds these samples of every pixel, of those that [`Accumulator::wanted`] counts, as `camera` sees the scene. The size of the
+    /// picture, its antialiasing and its planes are those of the accumulator.
+    ///
+    /// # Errors
+    /// See [`RenderError`]; some pixels may then have samples that others lack, and the accumulator is only good to be cleared.
+    fn sample(
+        &mut self,
+        camera: &Camera,
+        samples: Range<u32>,
+        into: &mut Accumulator,
+        observer: &dyn Observer,
+    ) -> Result<Statistics, RenderError>;
 }
 
 /// A finished picture and what it took.

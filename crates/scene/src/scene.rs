@@ -48,6 +48,15 @@ impl Scene {
         finite_bounds(self.objects.iter().map(|o| o.field.facts().bounds))
     }
 
+    /// Whether both scenes have the same field, as far as that is seen without a look into it: the same shapes, painted with the
+    /// same numbers of materials.
+    pub fn has_field_of(&self, other: &Scene) -> bool {
+        let same =
+            |(a, b): (&Object, &Object)| a.field.key() == b.field.key() && a.material == b.material;
+        self.objects.len() == other.objects.len()
+            && self.objects.iter().zip(&other.objects).all(same)
+    }
+
     /// All objects as one field: their union, each painted with its material (where no part of it is painted already) and
     /// its number. A scene without objects has no field.
     ///

@@ -9,7 +9,8 @@ use zeroset_catalogue::bounds::Aabb;
 use zeroset_catalogue::entries::catalogue;
 use zeroset_field::field::Field;
 use zeroset_field::program::{Limits, Program};
-use zeroset_scene::film::Plane;
+use zeroset_scene::accumulator::Sum;
+use zeroset_scene::camera::Camera;
 use zeroset_scene::light::Source as LightSource;
 use zeroset_scene::material::{self, Pattern};
 use zeroset_scene::render::RenderError;
@@ -61,11 +62,11 @@ pub struct Job {
     /// Everything that is one number, for a picture in one band; see [`Job::band`].
     pub frame: Frame,
     /// Parameters of the field.
-    pub params: Vec<f32>,
+    pub params: Arc<[f32]>,
     /// Instructions of an interpreted field, else one word.
     pub code: Arc<[u32]>,
     /// Lights, materials, objects, images.
-    pub table: Vec<[f32; 4]>,
+    pub table: Arc<[[f32; 4]]>,
     /// Words that the registers of an interpreted field take for each thread; 0 where the field is code.
     pub registers: u32,
     /// Whether each dispatch of rays answers one question of each to its field; else it traces them to the end.
@@ -98,9 +99,9 @@ impl Shaders {
         Ok(Job {
             source: made.source,
             frame: parts.frame,
-            params: parts.params,
+            params: parts.params.into(),
             code: made.code,
-            table: parts.table,
+            table: parts.table.into(),
             registers: made.registers,
             in_turns: false,
             turns,
@@ -205,23 +206,32 @@ impl Job {
         self.frame.prepass != 0
     }
 
-    /// The frame of the band that gives `count` rows from `first` on, with the planes that are asked for one after the
-    /// other.
-    pub fn band(&self, first: u32, count: u32, planes: &[Plane]) -> Frame {
+    /// The same scene as a camera sees it, in a picture of this size and antialiasing.
+    pub fn seen(&self, camera: &Camera, size: [u32; 2], antialias: Antialias) -> Job {
+        Job {
+            frame: seen(self.frame, camera, size, antialias),
+            ..self.clone()
+        }
+    }
+
+    /// The frame of the band that gives `count` rows from `first` on, with the sums that are asked for one after the other, of rays
+    /// a pixel from number `ray` on.
+    pub fn band(&self, first: u32, count: u32, sums: &[Sum], ray: u32) -> Frame {
         let from = first.saturating_sub(self.margin());
         let to = (first + count + self.margin()).min(self.frame.size[1]);
-        let mut places = [u32::MAX; 12];
+        let mut places = [u32::MAX; Sum::ALL.len()];
         let mut at = 0;
-        for plane in planes {
-            places[*plane as usize] = at;
-            at += plane.channels() as u32 * count * self.frame.size[0];
+        for sum in sums {
+            places[*sum as usize] = at;
+            at += sum.channels() as u32 * count * self.frame.size[0];
         }
-        let detail = (planes.iter()).any(|p| !matches!(p, Plane::Colour | Plane::Coverage));
         let mut frame = Frame {
             band: [from, to - from, first, count],
-            planes_a: [places[0], places[1], places[2], places[3]],
-            planes_b: [places[4], places[5], places[6], places[7]],
-            planes_c: [places[8], places[9], u32::from(detail), 0],
+            sums_a: [places[0], places[1], places[2], places[3]],
+            sums_b: [places[4], places[5], places[6], places[7]],
+            sums_c: [places[8], places[9], places[10], places[11]],
+            detail: u32::from(sums.iter().any(|sum| !sum.is_filtered())),
+            first_ray: ray,
             ..self.frame
         };
         let [across, down] = frame.cells(CONE_SIDES[0]);
@@ -250,12 +260,40 @@ impl Frame {
 
 fn frame(scene: &Scene, region: &Region) -> Frame {
     let settings = &scene.settings;
-    let view = View::new(&scene.camera, settings.size, settings.footprint);
-    let (samples, filter) = match settings.antialias {
+    let sky = &scene.sky;
+    let frame = Frame {
+        region_min: region.min,
+        region_max: region.max,
+        hit_selection: u32::from(settings.hit_selection),
+        max_steps: settings.max_steps.max(1),
+        footprint: settings.footprint,
+        march: match settings.march {
+            March::Fixed { step } => step,
+            March::Sphere => 1.0,
+            March::Relaxed { omega } => omega,
+            March::Enhanced { share } => share,
+            March::Auto { beta } => beta,
+        },
+        placing: settings.discontinuity_reduction,
+        seed: settings.seed,
+        sky_top: sky.top.to_array(),
+        ambient: sky.ambient,
+        sky_horizon: sky.horizon.to_array(),
+        sky_bottom: sky.bottom.to_array(),
+        prepass: u32::from(settings.prepass),
+        miss: f32::INFINITY,
+        ..Frame::default()
+    };
+    seen(frame, &scene.camera, settings.size, settings.antialias)
+}
+
+/// A frame as a camera sees it.
+fn seen(frame: Frame, camera: &Camera, size: [u32; 2], antialias: Antialias) -> Frame {
+    let view = View::new(camera, size, frame.footprint);
+    let (samples, filter) = match antialias {
         Antialias::None => (0, Filter::Box),
         Antialias::Supersample { samples, filter } => (samples.max(1), filter),
     };
-    let sky = &scene.sky;
     Frame {
         eye: view.eye,
         pinhole: u32::from(view.pinhole),
@@ -265,38 +303,18 @@ fn frame(scene: &Scene, region: &Region) -> Frame {
         near: view.near,
         back: view.back,
         far: view.far,
-        region_min: region.min,
-        region_max: region.max,
-        hit_selection: u32::from(settings.hit_selection),
-        max_steps: settings.max_steps.max(1),
         pixel: [view.pixel.slope, view.pixel.constant],
         threshold: [view.threshold.slope, view.threshold.constant],
         rounding: [view.rounding.slope, view.rounding.constant],
-        footprint: settings.footprint,
-        size: settings.size,
+        size,
         half: view.half,
-        march: match settings.march {
-            March::Fixed { step } => step,
-            March::Sphere => 1.0,
-            March::Relaxed { omega } => omega,
-            March::Enhanced { share } => share,
-            March::Auto { beta } => beta,
-        },
-        placing: settings.discontinuity_reduction,
         samples,
-        seed: settings.seed,
-        sky_top: sky.top.to_array(),
-        ambient: sky.ambient,
-        sky_horizon: sky.horizon.to_array(),
         filter_kind: match filter {
             Filter::Box => 0,
             Filter::Tent => 1,
             Filter::Mitchell => 2,
         },
-        sky_bottom: sky.bottom.to_array(),
-        prepass: u32::from(settings.prepass),
-        miss: f32::INFINITY,
-        ..Frame::default()
+        ..frame
     }
 }
 

@@ -147,12 +147,20 @@ shared! {
         wide_cones: u32,
         /// Rows of pixels: the first that the band stores, how many it stores, the first that it gives, how many it gives.
         band: [u32; 4],
-        /// Where planes 0 to 3 begin in `planes`, in numbers; 0xffffffff for one that is not asked for.
-        planes_a: [u32; 4],
-        /// Planes 4 to 7.
-        planes_b: [u32; 4],
-        /// Planes 8 and 9; then whether anything but colour and coverage is asked for.
-        planes_c: [u32; 4],
+        /// Where sums 0 to 3 begin in `planes`, in numbers; 0xffffffff for one that is not asked for.
+        sums_a: [u32; 4],
+        /// Sums 4 to 7.
+        sums_b: [u32; 4],
+        /// Sums 8 to 11.
+        sums_c: [u32; 4],
+        /// 1 if anything but colour and coverage is asked for.
+        detail: u32,
+        /// The first of the rays a pixel that are traced now.
+        first_ray: u32,
+        /// Not used.
+        pad_a: u32,
+        /// Not used.
+        pad_b: u32,
     }
 
     /// What one dispatch covers.
@@ -287,8 +295,8 @@ shared! {
         hits: f32,
         /// Their evaluations, and those of the own rays that did not.
         steps: f32,
-        /// Own rays.
-        rays: f32,
+        /// Not used.
+        pad: f32,
     }
 
     /// Sums over a pixel's own rays that hit.

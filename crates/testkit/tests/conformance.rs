@@ -41,7 +41,7 @@ fn scene(path: &Path) -> Scene {
     scene.settings.antialias = Antialias::None;
     let picture = CpuRenderer::new(None)
         .unwrap()
-        .prepare(&scene)
+        .prepare_scene(scene.clone().into())
         .expect("a program");
     if picture.program().is_fractal() {
         // rays end anywhere under the footprint: these steps put them where the value is the footprint
@@ -60,7 +60,9 @@ fn on(renderer: &dyn Renderer, scene: &Scene) -> Film {
 
 fn reference(scene: &Scene) -> Film {
     let renderer = CpuRenderer::new(None).unwrap();
-    let picture = renderer.prepare(scene).expect("a program");
+    let picture = renderer
+        .prepare_scene(scene.clone().into())
+        .expect("a program");
     let program = picture.program();
     plain::render(scene, &Quality::of(program, scene), || {
         Compiled::new(program, None)
@@ -429,13 +431,14 @@ fn planted_faults_are_noticed() {
         (scene, right)
     });
     let draw = |gpu: &GpuRenderer, scene: &Scene, from: &str, to: &str| {
-        let mut job = gpu.prepare(scene).expect("a job");
+        let mut job = gpu.job(scene).expect("a job");
         assert!(job.source.contains(from), "no `{from}` in the shader");
         job.source = job.source.replace(from, to).into();
-        let mut film = Film::new(SIZE[0], SIZE[1]);
-        gpu.render_into(&job, &mut film, &Silent)
+        let mut sums = Accumulator::new(SIZE, scene.settings.antialias, &Plane::ALL);
+        let samples = 0..sums.wanted();
+        gpu.sample(&job, samples, &mut sums, &Silent)
             .expect("a picture");
-        film
+        sums.into_film()
     };
     for (what, from, to, plane) in FAULTS {
         // light from everywhere shows by itself on the wall only

@@ -87,7 +87,9 @@ fn behind_every_hit_is_a_solid() {
         scene.objects.iter_mut().for_each(|o| o.occlusion = None);
         for (number, camera) in views(&scene).into_iter().enumerate() {
             scene.camera = camera;
-            let picture = renderer.prepare(&scene).expect("a program");
+            let picture = renderer
+                .prepare_scene(scene.clone().into())
+                .expect("a program");
             if picture.program().is_fractal() {
                 continue;
             }

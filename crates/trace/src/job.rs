@@ -5,7 +5,7 @@ use crate::material::{Place, colour as pattern_colour};
 use crate::normal::{normals, place};
 use crate::order::{self, PLACE};
 use crate::primary::{Plan, march};
-use crate::renderer::{Done, Picture};
+use crate::renderer::{Done, PreparedScene};
 use crate::sampling::{point, scramble};
 use crate::shade::{Substance, arrival, colour, sky};
 use crate::shadow::{shadows, towards};
@@ -14,20 +14,25 @@ use crate::stop::Stop;
 use crate::tile::{Area, HEIGHT, Hits, Scratch, Solid, WIDTH};
 use crate::{ao, cone, resolve};
 use fearless_simd::{Simd, prelude::*};
+use std::ops::Range;
 use zeroset_eval::BATCH;
 use zeroset_number::{Lanes, Ops, Real};
-use zeroset_scene::film::{Film, Plane};
+use zeroset_scene::accumulator::{Accumulator, Sum};
+use zeroset_scene::camera::Camera;
+use zeroset_scene::film::Plane;
 use zeroset_scene::material::Material;
-use zeroset_scene::settings::{Antialias, Filter, Occlusion, Shading};
+use zeroset_scene::settings::{Filter, Occlusion, Shading};
 use zeroset_shade::view::View;
 
 /// All that tiles of one rendering have in common.
 pub(crate) struct Job<'a> {
-    picture: &'a Picture<'a>,
+    picture: &'a PreparedScene,
     view: View,
     wanted: [bool; Plane::ALL.len()],
-    /// Samples a pixel and their filter.
+    /// Samples a pixel of the finished picture, and their filter.
     samples: Option<(u32, Filter)>,
+    /// Those that are taken now.
+    taken: Range<u32>,
     plan: Plan,
     /// Whether the marks of hits differ and are needed.
     marks: bool,
@@ -36,23 +41,22 @@ pub(crate) struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
-    pub(crate) fn new(picture: &'a Picture<'a>, film: &Film) -> Job<'a> {
+    pub(crate) fn new(
+        picture: &'a PreparedScene,
+        camera: &Camera,
+        taken: Range<u32>,
+        into: &Accumulator,
+    ) -> Job<'a> {
         let settings = &picture.scene.settings;
-        let wanted = Plane::ALL.map(|plane| film.has(plane));
+        let wanted = Plane::ALL.map(|plane| into.planes().contains(&plane));
         let objects = wanted[Plane::Object as usize] || picture.methods.len() > 1;
-        let samples = match settings.antialias {
-            Antialias::None => None,
-            Antialias::Supersample { samples, filter } => Some((samples.max(1), filter)),
-        };
+        let samples = into.filter().map(|filter| (into.wanted(), filter));
         Job {
             picture,
-            view: View::new(
-                &picture.scene.camera,
-                [film.width(), film.height()],
-                settings.footprint,
-            ),
+            view: View::new(camera, into.size(), settings.footprint),
             wanted,
             samples,
+            taken,
             plan: Plan {
                 march: settings.march,
                 select: settings.hit_selection,
@@ -70,9 +74,14 @@ impl<'a> Job<'a> {
         self.samples.is_some()
     }
 
-    /// Samples a pixel.
-    pub(crate) fn samples(&self) -> u32 {
+    /// Samples a pixel of the finished picture.
+    fn samples(&self) -> u32 {
         self.samples.map_or(1, |(n, _)| n)
+    }
+
+    /// Samples a pixel that are taken now.
+    pub(crate) fn taken(&self) -> u32 {
+        self.taken.len() as u32
     }
 
     fn wants(&self, plane: Plane) -> bool {
@@ -99,7 +108,7 @@ impl<'a> Job<'a> {
         );
         q.planes.clear();
         let mut hits = 0;
-        for index in 0..self.samples() {
+        for index in self.taken.clone() {
             if stop.is_set() {
                 break;
             }
@@ -115,7 +124,7 @@ impl<'a> Job<'a> {
                 resolve::splat_samples(s, filter, area, &q.planes, sums);
             }
         }
-        let rays = (area.width * area.height) as u64 * u64::from(self.samples());
+        let rays = (area.width * area.height) as u64 * u64::from(self.taken());
         Done {
             rays,
             hits,
@@ -148,7 +157,7 @@ impl<'a> Job<'a> {
     /// Finds what the rays hit and what colour it has.
     fn trace<S: Simd>(&self, s: S, solid: &Solid<'_>, area: &Area, index: u32, q: &mut Scratch) {
         let settings = &self.picture.scene.settings;
-        if index == 0 {
+        if index == self.taken.start {
             let reach = if self.samples.is_some() { 0.5 } else { 0.0 };
             cone::prepass(
                 s,
@@ -393,7 +402,7 @@ impl<'a> Job<'a> {
         s.vectorize(
             #[inline(always)]
             || {
-                let (scene, hits) = (self.picture.scene, &mut q.hits);
+                let (scene, hits) = (&self.picture.scene, &mut q.hits);
                 // with more rays a pixel each stands for less of it
                 let finer = 1.0 / (self.samples() as f32).sqrt();
                 for i in (0..hits.count).step_by(S::f32s::LEN) {
@@ -475,26 +484,27 @@ impl<'a> Job<'a> {
         );
     }
 
-    /// Writes the tile to the film, all but what is filtered.
+    /// Adds the tile to the sums of the picture, all but what is filtered.
     pub(crate) fn deliver(
         &self,
         area: &Area,
         size: [u32; 2],
         q: &Scratch,
-        band: &mut [(Plane, &mut [f32])],
+        band: &mut [(Sum, &mut [f32])],
     ) {
-        let rays = self.samples() as f32;
-        for (plane, numbers) in band {
-            if numbers.is_empty()
-                || (self.is_filtered() && matches!(plane, Plane::Colour | Plane::Coverage))
-            {
-                continue;
-            }
-            let channels = plane.channels();
-            for y in 0..area.height {
-                let row = (y * size[0] as usize + area.x) * channels;
-                let out = &mut numbers[row..row + area.width * channels];
-                q.planes.write(*plane, y * WIDTH, rays, out);
+        let width = size[0] as usize;
+        for y in 0..area.height {
+            let at = y * width + area.x;
+            let depth = band.iter().find(|(sum, _)| *sum == Sum::Depth);
+            let depth = depth.map_or(&[][..], |(_, depth)| &depth[at..at + area.width]);
+            let nearer = q.planes.nearer(y * WIDTH, depth);
+            for (sum, numbers) in band.iter_mut() {
+                if self.is_filtered() && sum.is_filtered() {
+                    continue;
+                }
+                let channels = sum.channels();
+                let out = &mut numbers[at * channels..(at + area.width) * channels];
+                q.planes.add_to(*sum, y * WIDTH, &nearer, out);
             }
         }
     }

@@ -24,4 +24,4 @@ mod simd;
 mod stop;
 mod tile;
 
-pub use renderer::{CpuRenderer, Part, Picture, sums};
+pub use renderer::{CpuRenderer, Part, PreparedScene, sums};

@@ -3,8 +3,8 @@
 use crate::march::ORDINAL;
 use crate::order::PLACE;
 use crate::simd::Sheet;
-use crate::tile::Hits;
-use zeroset_scene::film::Plane;
+use crate::tile::{Hits, WIDTH};
+use zeroset_scene::accumulator::Sum;
 
 /// The planes of a tile, row by row. Colour and coverage are those of the last sample; all others are sums over the samples, or belong to
 /// the nearest hit.
@@ -87,53 +87,49 @@ impl Planes {
         }
     }
 
-    /// Writes the pixels from `at` on, of which `rays` samples were taken each.
-    pub(crate) fn write(&self, plane: Plane, at: usize, rays: f32, out: &mut [f32]) {
-        // where nothing is hit, nothing is occluded or in shadow
-        let mean = |sheet: &Sheet, i: usize| {
-            if self.hits[i] > 0.0 {
-                sheet[i] / self.hits[i]
-            } else {
-                1.0
+    /// Which pixels of the row that begins at `at` were hit nearer than these depths.
+    pub(crate) fn nearer(&self, at: usize, depths: &[f32]) -> [bool; WIDTH] {
+        let mut nearer = [false; WIDTH];
+        for ((nearer, own), held) in nearer.iter_mut().zip(&self.depth[at..]).zip(depths) {
+            *nearer = own < held;
+        }
+        nearer
+    }
+
+    /// Adds the pixels from `at` on to a sum. `nearer` says which of them are nearer than what it holds.
+    pub(crate) fn add_to(&self, sum: Sum, at: usize, nearer: &[bool; WIDTH], out: &mut [f32]) {
+        let nearest = |sheet: &Sheet, out: &mut [f32]| {
+            for ((x, own), nearer) in out.iter_mut().zip(&sheet[at..]).zip(nearer) {
+                if *nearer {
+                    *x = *own;
+                }
             }
         };
-        match plane {
-            Plane::Colour => interleave(&self.colour, at, out, |c, _| c),
-            Plane::Albedo => interleave(&self.albedo, at, out, |c, i| {
-                c.map(|x| x / self.hits[i].max(1.0))
-            }),
-            Plane::Normal => interleave(&self.normal, at, out, |c, _| {
-                let length = (c[0] * c[0] + c[1] * c[1] + c[2] * c[2]).sqrt();
-                c.map(|x| x / length.max(f32::MIN_POSITIVE))
-            }),
-            Plane::Coverage => out.copy_from_slice(&self.coverage[at..at + out.len()]),
-            Plane::Depth => out.copy_from_slice(&self.depth[at..at + out.len()]),
-            Plane::Residual => out.copy_from_slice(&self.residual[at..at + out.len()]),
-            Plane::Object => out.copy_from_slice(&self.object[at..at + out.len()]),
-            Plane::Occlusion => out
-                .iter_mut()
-                .zip(at..)
-                .for_each(|(x, i)| *x = mean(&self.occlusion, i)),
-            Plane::Shadow => out
-                .iter_mut()
-                .zip(at..)
-                .for_each(|(x, i)| *x = mean(&self.shadow, i)),
-            Plane::Steps => out
-                .iter_mut()
-                .zip(at..)
-                .for_each(|(x, i)| *x = self.steps[i] / rays),
+        let plus = |sheet: &Sheet, out: &mut [f32]| {
+            out.iter_mut()
+                .zip(&sheet[at..])
+                .for_each(|(x, own)| *x += own);
+        };
+        let plus3 = |sheets: &[Box<Sheet>; 3], out: &mut [f32]| {
+            for (pixel, i) in out.as_chunks_mut::<3>().0.iter_mut().zip(at..) {
+                for (x, sheet) in pixel.iter_mut().zip(sheets) {
+                    *x += sheet[i];
+                }
+            }
+        };
+        match sum {
+            Sum::Colour => plus3(&self.colour, out),
+            Sum::Coverage => plus(&self.coverage, out),
+            Sum::Weight => out.iter_mut().for_each(|x| *x += 1.0),
+            Sum::Hits => plus(&self.hits, out),
+            Sum::Depth => nearest(&self.depth, out),
+            Sum::Normal => plus3(&self.normal, out),
+            Sum::Albedo => plus3(&self.albedo, out),
+            Sum::Occlusion => plus(&self.occlusion, out),
+            Sum::Shadow => plus(&self.shadow, out),
+            Sum::Steps => plus(&self.steps, out),
+            Sum::Residual => nearest(&self.residual, out),
+            Sum::Object => nearest(&self.object, out),
         }
-    }
-}
-
-fn interleave(
-    sheets: &[Box<Sheet>; 3],
-    at: usize,
-    out: &mut [f32],
-    f: impl Fn([f32; 3], usize) -> [f32; 3],
-) {
-    let (pixels, _) = out.as_chunks_mut::<3>();
-    for (pixel, i) in pixels.iter_mut().zip(at..) {
-        *pixel = f([sheets[0][i], sheets[1][i], sheets[2][i]], i);
     }
 }

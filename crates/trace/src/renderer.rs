@@ -1,34 +1,39 @@
-//! The renderer: tiles over threads, into a film.
+//! The renderer: tiles over threads, into sums of samples.
 
 use crate::job::Job;
 use crate::resolve::{self, ACCUMULATORS};
 use crate::stop::Stop;
 use crate::tile::{Area, HEIGHT, Scratch, WIDTH};
-use fearless_simd::{Level, dispatch};
+use fearless_simd::Level;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
+use std::ops::Range;
 use std::sync::atomic::AtomicBool;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 use zeroset_catalogue::bounds::Aabb;
 use zeroset_catalogue::entries::catalogue;
 use zeroset_catalogue::tape::Operation;
 use zeroset_field::field::Field;
 use zeroset_field::program::{Limits, Program};
+use zeroset_number::at_level;
+use zeroset_scene::accumulator::{self, Accumulator, Sum};
+use zeroset_scene::camera::Camera;
 use zeroset_scene::film::{Film, Plane, SUMS};
 use zeroset_scene::material::Pattern;
-use zeroset_scene::render::{Evaluations, Frame, Observer, RenderError, Renderer, Statistics};
+use zeroset_scene::render::{Evaluations, Observer, Prepared, RenderError, Renderer, Statistics};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Occlusion};
 use zeroset_shade::skin::has_skins;
 use zeroset_shade::view::Region;
 
-/// The CPU's renderer: sphere tracing in SIMD streams, over all threads that it is given.
+/// The CPU's renderer: sphere tracing in SIMD streams, over all threads that it is given. Clones share their threads.
 ///
 /// The same scene gives the same picture, bit for bit, whatever the number of threads and the order of tiles.
+#[derive(Clone)]
 pub struct CpuRenderer {
-    pool: ThreadPool,
+    pool: Arc<ThreadPool>,
     level: Level,
     limits: Limits,
     sums: u64,
@@ -50,7 +55,7 @@ impl CpuRenderer {
                 reason: e.to_string(),
             })?;
         Ok(CpuRenderer {
-            pool,
+            pool: Arc::new(pool),
             level: Level::new(),
             limits: Limits::default(),
             sums: SUMS,
@@ -67,7 +72,7 @@ impl CpuRenderer {
         CpuRenderer { limits, ..self }
     }
 
-    /// With another number of bytes for the sums of samples that are kept at a time; the picture does not depend on it.
+    /// With another number of bytes for the sums of tiles that are kept at a time; the picture does not depend on it.
     pub fn with_sums(self, sums: u64) -> CpuRenderer {
         CpuRenderer { sums, ..self }
     }
@@ -77,92 +82,35 @@ impl CpuRenderer {
         self.pool.current_num_threads()
     }
 
-    /// Compiles a scene, so that it can be rendered more than once.
+    /// As [`Renderer::prepare`], for what only this renderer can do with a scene.
     ///
     /// # Errors
     /// See [`RenderError`].
-    pub fn prepare<'a>(&self, scene: &'a Scene) -> Result<Picture<'a>, RenderError> {
-        Picture::new(scene, &self.limits)
-    }
-
-    /// Renders into a film that is there already, of any size, as far as it has planes.
-    ///
-    /// # Errors
-    /// [`RenderError::Cancelled`] where the observer asked for it; the film is then unfinished.
-    pub fn render_into(
-        &self,
-        picture: &Picture<'_>,
-        film: &mut Film,
-        observer: &dyn Observer,
-    ) -> Result<Statistics, RenderError> {
-        let part = self.render_part(picture, film, observer);
-        if part.is_whole {
-            Ok(part.statistics)
-        } else {
-            Err(RenderError::Cancelled)
-        }
-    }
-
-    /// As [`CpuRenderer::render_into`]. Where the observer ends it, the film holds the tiles that were finished by then, and
-    /// anything in all other places.
-    pub fn render_part(
-        &self,
-        picture: &Picture<'_>,
-        film: &mut Film,
-        observer: &dyn Observer,
-    ) -> Part {
-        let began = Instant::now();
-        let size = [film.width(), film.height()];
-        let run = Run {
-            sums: self.sums,
-            ..Run::new(picture, film, self.level, observer)
-        };
-        let done = self.pool.install(|| run.all(film));
-        let finished = run.finished.into_inner();
-        let mut finished = finished.unwrap_or_else(PoisonError::into_inner);
-        finished.sort_unstable();
-        let area = |k: &usize| {
-            let area = Area::of(*k, size);
-            [area.x, area.y, area.width, area.height].map(|n| n as u32)
-        };
-        Part {
-            statistics: Statistics {
-                rays: done.rays,
-                hits: done.hits,
-                evaluations: done.evaluations,
-                seconds: began.elapsed().as_secs_f64(),
-                threads: self.threads(),
-            },
-            is_whole: finished.len() == Area::count(size),
-            finished: finished.iter().map(area).collect(),
-            spent: done.spent,
-        }
+    pub fn prepare_scene(&self, scene: Arc<Scene>) -> Result<PreparedScene, RenderError> {
+        PreparedScene::new(self.clone(), scene)
     }
 
     /// Bytes that a picture of the scene takes while these planes are rendered, apart from the scene itself.
     pub fn memory(&self, scene: &Scene, planes: &[Plane]) -> u64 {
-        let [width, height] = scene.settings.size;
-        let numbers: usize = planes.iter().map(|p| p.channels()).sum();
-        let sums = match scene.settings.antialias {
+        let size = scene.settings.size;
+        let scratch = match scene.settings.antialias {
             Antialias::None => 0,
-            Antialias::Supersample { .. } => sums([width, height]),
+            Antialias::Supersample { .. } => sums(size),
         };
-        4 * u64::from(width) * u64::from(height) * numbers as u64 + sums
+        accumulator::bytes(size, planes) + scratch
     }
 }
 
 impl Renderer for CpuRenderer {
-    fn render_planes(
-        &self,
-        scene: &Scene,
-        planes: &[Plane],
-        observer: &dyn Observer,
-    ) -> Result<Frame, RenderError> {
-        let picture = self.prepare(scene)?;
-        let [width, height] = scene.settings.size;
-        let mut film = Film::with(width, height, planes);
-        let statistics = self.render_into(&picture, &mut film, observer)?;
-        Ok(Frame { film, statistics })
+    fn name(&self) -> String {
+        match self.threads() {
+            1 => "CPU, 1 thread".to_owned(),
+            n => format!("CPU, {n} threads"),
+        }
+    }
+
+    fn prepare(&self, scene: Arc<Scene>) -> Result<Box<dyn Prepared>, RenderError> {
+        Ok(Box::new(self.prepare_scene(scene)?))
     }
 }
 
@@ -179,9 +127,10 @@ pub struct Part {
     pub spent: u64,
 }
 
-/// A scene that is ready to be rendered.
-pub struct Picture<'a> {
-    pub(crate) scene: &'a Scene,
+/// A scene that is ready to be rendered on the CPU.
+pub struct PreparedScene {
+    renderer: CpuRenderer,
+    pub(crate) scene: Arc<Scene>,
     pub(crate) program: Program,
     /// Where the solid is; empty where the scene has no objects.
     pub(crate) region: Region,
@@ -202,21 +151,18 @@ pub struct Picture<'a> {
     spare: Mutex<Vec<Box<Scratch>>>,
 }
 
-impl<'a> Picture<'a> {
-    fn new(scene: &'a Scene, limits: &Limits) -> Result<Picture<'a>, RenderError> {
-        let (program, region) = match scene.field()? {
-            Some(field) => {
-                let program = Program::compile(&field, limits)?;
-                let region = Region::new(&program.bounds());
-                (program, region)
-            }
-            None => {
-                // no ray goes into an empty region: the program stands for nothing
-                let sphere = &catalogue().primitives[0];
-                let field = Field::primitive(sphere, sphere.info.defaults())?;
-                (Program::compile(&field, limits)?, Region::new(&Aabb::EMPTY))
-            }
-        };
+impl PreparedScene {
+    fn new(renderer: CpuRenderer, scene: Arc<Scene>) -> Result<PreparedScene, RenderError> {
+        let (program, region) = compiled(&scene, &renderer.limits)?;
+        Ok(PreparedScene::of(renderer, scene, program, region))
+    }
+
+    fn of(
+        renderer: CpuRenderer,
+        scene: Arc<Scene>,
+        program: Program,
+        region: Region,
+    ) -> PreparedScene {
         let (mut materials, mut objects) = (BTreeSet::new(), BTreeSet::new());
         for instruction in &program.structure().marks.instructions {
             match instruction.operation {
@@ -244,10 +190,10 @@ impl<'a> Picture<'a> {
         }
         let has_orbits =
             (scene.materials.iter()).any(|m| matches!(m.pattern, Pattern::Orbit { .. }));
-        let spare = Mutex::new(Vec::new());
-        Ok(Picture {
+        PreparedScene {
+            renderer,
+            skins: has_skins(&scene, &program),
             scene,
-            skins: has_skins(scene, &program),
             program,
             region,
             material: only(&materials),
@@ -255,22 +201,124 @@ impl<'a> Picture<'a> {
             has_orbits,
             methods,
             method_of,
-            spare,
-        })
+            spare: Mutex::default(),
+        }
     }
 
     /// What the scene compiled to.
     pub fn program(&self) -> &Program {
         &self.program
     }
+
+    /// Renders as the scene's own camera and settings say, but for the size, until the observer ends it.
+    pub fn render_part(
+        &self,
+        size: [u32; 2],
+        planes: &[Plane],
+        observer: &dyn Observer,
+    ) -> (Part, Film) {
+        let mut sums = Accumulator::new(size, self.scene.settings.antialias, planes);
+        let samples = 0..sums.wanted();
+        let part = self.sample_part(&self.scene.camera, samples, &mut sums, observer);
+        (part, sums.into_film())
+    }
+
+    /// As [`Prepared::sample`]. Where the observer ends it, the accumulator holds the tiles that were finished by then, and
+    /// anything in all other places.
+    pub fn sample_part(
+        &self,
+        camera: &Camera,
+        samples: Range<u32>,
+        into: &mut Accumulator,
+        observer: &dyn Observer,
+    ) -> Part {
+        let began = Instant::now();
+        let size = into.size();
+        let run = Run {
+            picture: self,
+            size,
+            job: Job::new(self, camera, samples.clone(), into),
+            level: self.renderer.level,
+            observer,
+            cancelled: AtomicBool::new(false),
+            sums: self.renderer.sums,
+            finished: Mutex::default(),
+        };
+        let done = self.renderer.pool.install(|| run.all(into));
+        into.count(samples.len() as u32);
+        let finished = run.finished.into_inner();
+        let mut finished = finished.unwrap_or_else(PoisonError::into_inner);
+        finished.sort_unstable();
+        let area = |k: &usize| {
+            let area = Area::of(*k, size);
+            [area.x, area.y, area.width, area.height].map(|n| n as u32)
+        };
+        Part {
+            statistics: Statistics {
+                rays: done.rays,
+                hits: done.hits,
+                evaluations: done.evaluations,
+                seconds: began.elapsed().as_secs_f64(),
+                threads: self.renderer.threads(),
+            },
+            is_whole: finished.len() == Area::count(size),
+            finished: finished.iter().map(area).collect(),
+            spent: done.spent,
+        }
+    }
 }
 
-/// Rows of a film that tiles beside each other write to.
-type Band<'f> = Mutex<Vec<(Plane, &'f mut [f32])>>;
+impl Prepared for PreparedScene {
+    fn update(&mut self, scene: Arc<Scene>) -> Result<(), RenderError> {
+        let (program, region) = if scene.has_field_of(&self.scene) {
+            (self.program.clone(), self.region)
+        } else {
+            compiled(&scene, &self.renderer.limits)?
+        };
+        let spare = std::mem::take(&mut self.spare);
+        let fits = program.structure() == self.program.structure();
+        *self = PreparedScene::of(self.renderer.clone(), scene, program, region);
+        if fits {
+            self.spare = spare;
+        }
+        Ok(())
+    }
+
+    fn sample(
+        &mut self,
+        camera: &Camera,
+        samples: Range<u32>,
+        into: &mut Accumulator,
+        observer: &dyn Observer,
+    ) -> Result<Statistics, RenderError> {
+        let part = self.sample_part(camera, samples, into, observer);
+        if part.is_whole {
+            Ok(part.statistics)
+        } else {
+            Err(RenderError::Cancelled)
+        }
+    }
+}
+
+/// The field of a scene, and where its solid is.
+fn compiled(scene: &Scene, limits: &Limits) -> Result<(Program, Region), RenderError> {
+    if let Some(field) = scene.field()? {
+        let program = Program::compile(&field, limits)?;
+        let region = Region::new(&program.bounds());
+        return Ok((program, region));
+    }
+    // no ray goes into an empty region: the program stands for nothing
+    let sphere = &catalogue().primitives[0];
+    let field = Field::primitive(sphere, sphere.info.defaults())?;
+    Ok((Program::compile(&field, limits)?, Region::new(&Aabb::EMPTY)))
+}
+
+/// Rows of sums that tiles beside each other add to.
+type Band<'f> = Mutex<Vec<(Sum, &'f mut [f32])>>;
 
 /// One rendering.
 struct Run<'a> {
-    picture: &'a Picture<'a>,
+    picture: &'a PreparedScene,
     size: [u32; 2],
     job: Job<'a>,
     level: Level,
@@ -282,29 +330,9 @@ struct Run<'a> {
     finished: Mutex<Vec<usize>>,
 }
 
-impl<'a> Run<'a> {
-    fn new(
-        picture: &'a Picture<'a>,
-        film: &Film,
-        level: Level,
-        observer: &'a dyn Observer,
-    ) -> Run<'a> {
-        let size = [film.width(), film.height()];
-        let (job, cancelled) = (Job::new(picture, film), AtomicBool::new(false));
-        Run {
-            picture,
-            size,
-            job,
-            level,
-            observer,
-            cancelled,
-            sums: SUMS,
-            finished: Mutex::default(),
-        }
-    }
-
-    fn all(&self, film: &mut Film) -> Done {
-        let mut bands = bands(film);
+impl Run<'_> {
+    fn all(&self, into: &mut Accumulator) -> Done {
+        let mut bands = bands(into);
         if self.job.is_filtered() {
             return self.filtered(&mut bands);
         }
@@ -362,7 +390,7 @@ impl<'a> Run<'a> {
         let scratch = spare.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let mut q = scratch.unwrap_or_else(|| Box::new(Scratch::new(self.picture.program())));
         q.counts = Evaluations::default();
-        let done = dispatch!(self.level, s => self.job.tile(s, &area, sums, &mut q, &stop));
+        let done = at_level!(self.level, s => self.job.tile(s, &area, sums, &mut q, &stop));
         if stop.is_set() {
             // another thread may have set it after the last sample: then the tile is lost, which does no harm
             return Done {
@@ -379,8 +407,7 @@ impl<'a> Run<'a> {
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .push(k);
-        let total =
-            u64::from(self.size[0]) * u64::from(self.size[1]) * u64::from(self.job.samples());
+        let total = u64::from(self.size[0]) * u64::from(self.size[1]) * u64::from(self.job.taken());
         self.observer.advance(done.rays, total);
         done
     }
@@ -423,15 +450,15 @@ impl std::iter::Sum for Done {
     }
 }
 
-/// The rows of all planes, cut into bands as high as a tile.
-fn bands(film: &mut Film) -> Vec<Band<'_>> {
-    let (width, height) = (film.width() as usize, film.height() as usize);
-    let mut bands: Vec<Vec<(Plane, &mut [f32])>> =
+/// The rows of all sums, cut into bands as high as a tile.
+fn bands(into: &mut Accumulator) -> Vec<Band<'_>> {
+    let [width, height] = into.size().map(|n| n as usize);
+    let mut bands: Vec<Vec<(Sum, &mut [f32])>> =
         (0..height.div_ceil(HEIGHT)).map(|_| Vec::new()).collect();
-    for (plane, numbers) in film.planes_mut() {
-        let rows = numbers.chunks_mut(width * plane.channels() * HEIGHT);
+    for (sum, numbers) in into.sums_mut() {
+        let rows = numbers.chunks_mut(width * sum.channels() * HEIGHT);
         for (band, rows) in bands.iter_mut().zip(rows) {
-            band.push((plane, rows));
+            band.push((sum, rows));
         }
     }
     bands.into_iter().map(Mutex::new).collect()

@@ -9,7 +9,7 @@ use crate::simd::{fma, load, load3, splat, store};
 use crate::tile::{Area, HEIGHT, WIDTH};
 use fearless_simd::{Simd, prelude::*};
 use zeroset_number::{Lanes, Ops, Real};
-use zeroset_scene::film::Plane;
+use zeroset_scene::accumulator::Sum;
 use zeroset_scene::settings::Filter;
 
 /// Pixels that sums reach over the edge of a tile: as many as the widest filter.
@@ -88,14 +88,14 @@ fn add<S: Simd, const TAPS: usize>(
     );
 }
 
-/// Writes colour and coverage of band number `k` of a picture from the sums of the tiles around it; `sums` begin with those
+/// Adds to the colour, coverage and weight of band number `k` of a picture the sums of the tiles around it; `sums` begin with those
 /// of row number `first` of tiles.
 pub(crate) fn band(
     k: usize,
     sums: &[f32],
     first: usize,
     size: [u32; 2],
-    band: &mut [(Plane, &mut [f32])],
+    band: &mut [(Sum, &mut [f32])],
 ) {
     let (width, height) = (size[0] as usize, size[1] as usize);
     let (across, down) = (width.div_ceil(WIDTH), height.div_ceil(HEIGHT));
@@ -126,24 +126,18 @@ pub(crate) fn band(
                     }
                 }
             }
-            for (plane, numbers) in band.iter_mut() {
-                let at = y * width + area.x;
-                match plane {
-                    Plane::Colour if !numbers.is_empty() => {
-                        for x in 0..area.width {
-                            for c in 0..3 {
-                                // the filter's negative lobes can make a dark pixel beside a bright one less than black
-                                numbers[(at + x) * 3 + c] =
-                                    (row[c][x] / row[4][x].max(1e-6)).max(0.0);
-                            }
-                        }
+            let at = y * width + area.x;
+            for (sum, numbers) in band.iter_mut() {
+                let of = match sum {
+                    Sum::Colour => &row[..3],
+                    Sum::Coverage => &row[3..4],
+                    Sum::Weight => &row[4..5],
+                    _ => continue,
+                };
+                for (c, of) in of.iter().enumerate() {
+                    for x in 0..area.width {
+                        numbers[(at + x) * sum.channels() + c] += of[x];
                     }
-                    Plane::Coverage if !numbers.is_empty() => {
-                        for x in 0..area.width {
-                            numbers[at + x] = (row[3][x] / row[4][x].max(1e-6)).clamp(0.0, 1.0);
-                        }
-                    }
-                    _ => {}
                 }
             }
         }

@@ -74,7 +74,7 @@ impl App {
             move || ctx.request_repaint()
         };
         let loader = Loader::start(open.scene, open.options, open.explain, wake())?;
-        let engine = Engine::start(open.backend, wake())?;
+        let engine = Engine::start(open.renderer, wake())?;
         Ok(App {
             engine: Some(engine),
             loader: Some(loader),

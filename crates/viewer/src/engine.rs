@@ -12,10 +12,13 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use zeroset_output::view::section::Section;
 use zeroset_output::view::{Key, View};
+use zeroset_scene::accumulator::Accumulator;
 use zeroset_scene::camera::Camera;
+use zeroset_scene::fallback::Fallback;
 use zeroset_scene::film::{Film, Plane};
-use zeroset_scene::render::{Evaluations, Observer, RenderError, Renderer};
+use zeroset_scene::render::{Evaluations, Observer, Prepared, RenderError, Renderer};
 use zeroset_scene::scene::Scene;
+use zeroset_scene::settings::Antialias::{self, Supersample};
 use zeroset_scene::settings::{Settings, Shadow};
 use zeroset_trace::CpuRenderer;
 
@@ -26,34 +29,16 @@ const BROKEN: &str = "the renderer broke down; please report this scene as a bug
 /// Numbers beside a bar of colours.
 const TICKS: usize = 6;
 
-/// What renders, and what it is called.
-pub struct Backend {
-    /// Its name, for the status bar.
-    pub name: String,
-    /// The renderer.
-    pub renderer: Box<dyn Renderer + Send>,
-}
+/// Makes the renderer, on the thread that will use it.
+pub type MakeRenderer = Box<dyn FnOnce() -> Result<Arc<dyn Renderer>, RenderError> + Send>;
 
-impl Backend {
-    /// The renderer on the CPU.
-    ///
-    /// # Errors
-    /// [`RenderError::Threads`] where the system does not give that many.
-    pub fn cpu(threads: Option<usize>) -> Result<Backend, RenderError> {
-        let renderer = CpuRenderer::new(threads)?;
-        let name = match renderer.threads() {
-            1 => "CPU, 1 thread".to_owned(),
-            n => format!("CPU, {n} threads"),
-        };
-        Ok(Backend {
-            name,
-            renderer: Box::new(renderer),
-        })
-    }
+/// The renderer on the CPU.
+///
+/// # Errors
+/// [`RenderError::Threads`] where the system does not give that many.
+pub fn cpu(threads: Option<usize>) -> Result<Arc<dyn Renderer>, RenderError> {
+    Ok(Arc::new(CpuRenderer::new(threads)?))
 }
-
-/// Makes the backend, on the thread that will use it.
-pub type MakeBackend = Box<dyn FnOnce() -> Result<Backend, RenderError> + Send>;
 
 /// How one side of the window shows the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,14 +102,9 @@ impl Request {
     }
 
     /// The scene as a look shows it.
-    fn scene_of(&self, look: &Look, rung: &Rung) -> Scene {
+    fn scene_of(&self, look: &Look) -> Scene {
         let mut scene = Scene::clone(&self.scene);
-        scene.camera = self.camera;
-        scene.settings = Settings {
-            size: rung.size,
-            antialias: rung.antialias,
-            ..look.settings
-        };
+        scene.settings = look.settings;
         if let Some(shadow) = look.shadow {
             for light in &mut scene.lights {
                 light.shadow = shadow;
@@ -204,7 +184,7 @@ impl Engine {
     /// # Errors
     /// The system gives no thread.
     pub fn start(
-        make: MakeBackend,
+        make: MakeRenderer,
         wake: impl Fn() + Send + Sync + 'static,
     ) -> std::io::Result<Engine> {
         let shared = Arc::new(Shared {
@@ -218,7 +198,7 @@ impl Engine {
         let thread = std::thread::Builder::new()
             .name("engine".into())
             .stack_size(STACK)
-            .spawn(move || Worker::run(&theirs, make, &tell, &wake))?;
+            .spawn(move || Worker::run(&theirs, make, tell, Arc::new(wake)))?;
         Ok(Engine {
             shared,
             events,
@@ -353,12 +333,37 @@ impl Kept {
     }
 }
 
+/// Says what happens to the window.
+#[derive(Clone)]
+struct News {
+    tell: Sender<Event>,
+    wake: Arc<dyn Fn() + Send + Sync>,
+}
+
+impl News {
+    fn say(&self, event: Event) {
+        // a window that is gone needs no news
+        let _ = self.tell.send(event);
+        (self.wake)();
+    }
+}
+
+/// A scene that is ready for a look.
+struct Ready {
+    scene: Arc<Scene>,
+    look: Look,
+    prepared: Box<dyn Prepared>,
+}
+
 /// The thread's side.
 struct Worker<'a> {
     shared: &'a Shared,
-    backend: Backend,
-    tell: &'a Sender<Event>,
-    wake: &'a (dyn Fn() + Send + Sync),
+    news: News,
+    renderer: Fallback,
+    /// Whether the CPU stands in since the last picture.
+    fell_back: Arc<AtomicBool>,
+    /// One for each look at most.
+    ready: Vec<Ready>,
     rate: Option<f64>,
     kept: Kept,
     cut: Cut,
@@ -367,36 +372,50 @@ struct Worker<'a> {
 impl Worker<'_> {
     fn run(
         shared: &Shared,
-        make: MakeBackend,
-        tell: &Sender<Event>,
-        wake: &(dyn Fn() + Send + Sync),
+        make: MakeRenderer,
+        tell: Sender<Event>,
+        wake: Arc<dyn Fn() + Send + Sync>,
     ) {
-        let backend = match make() {
-            Ok(backend) => backend,
+        let news = News { tell, wake };
+        let renderer = match make() {
+            Ok(renderer) => renderer,
             Err(error) => {
-                // a window that is gone needs no news
-                let _ = tell.send(Event::Failed(error.to_string()));
-                wake();
+                news.say(Event::Failed(error.to_string()));
                 return;
             }
         };
+        news.say(Event::Ready(renderer.name()));
+        let fell_back = Arc::new(AtomicBool::new(false));
+        let (told, loud) = (Arc::clone(&fell_back), news.clone());
+        let ready = news.clone();
+        let make = move || {
+            let renderer = cpu(None)?;
+            ready.say(Event::Ready(renderer.name()));
+            Ok(renderer)
+        };
+        let tell = move |error: &RenderError| {
+            told.store(true, Ordering::Relaxed);
+            let reason = match error {
+                RenderError::Device { reason, .. } => reason.clone(),
+                other => other.to_string(),
+            };
+            loud.say(Event::FellBack(reason));
+        };
         let worker = Worker {
             shared,
-            tell,
-            wake,
+            news,
+            renderer: Fallback::new(renderer, Box::new(make), Box::new(tell)),
+            fell_back,
+            ready: Vec::new(),
             rate: None,
             kept: Kept::default(),
             cut: Cut::default(),
-            backend,
         };
-        worker.say(Event::Ready(worker.backend.name.clone()));
         worker.serve();
     }
 
     fn say(&self, event: Event) {
-        // a window that is gone needs no news
-        let _ = self.tell.send(event);
-        (self.wake)();
+        self.news.say(event);
     }
 
     fn serve(mut self) {
@@ -416,37 +435,23 @@ impl Worker<'_> {
             drop(wanted);
             let request = Arc::new(request);
             // a fault of this program costs a picture, not the window
-            let work = || self.serve_one(request, number);
+            let work = || self.climb(request, number);
             match catch_unwind(AssertUnwindSafe(work)) {
                 Ok(Ok(()) | Err(RenderError::Cancelled)) => {}
                 Ok(Err(error)) => self.say(Event::Failed(error.to_string())),
                 Err(_) => {
                     self.say(Event::Failed(BROKEN.to_owned()));
-                    if self.fall_back(BROKEN.to_owned()).is_err() {
-                        return;
-                    }
+                    self.ready.clear();
+                    self.renderer.give_up(&RenderError::Device {
+                        reason: BROKEN.to_owned(),
+                        advice: None,
+                    });
                 }
             }
-        }
-    }
-
-    fn serve_one(&mut self, request: Arc<Request>, number: u64) -> Result<(), RenderError> {
-        match self.climb(Arc::clone(&request), number) {
-            Err(RenderError::Device { reason, .. }) => {
-                self.fall_back(reason)?;
-                self.climb(request, number)
+            if self.fell_back.swap(false, Ordering::Relaxed) {
+                (self.rate, self.kept, self.cut) = (None, Kept::default(), Cut::default());
             }
-            result => result,
         }
-    }
-
-    /// Goes on with the CPU when the device that rendered is no more.
-    fn fall_back(&mut self, reason: String) -> Result<(), RenderError> {
-        self.backend = Backend::cpu(None)?;
-        (self.rate, self.kept, self.cut) = (None, Kept::default(), Cut::default());
-        self.say(Event::Ready(self.backend.name.clone()));
-        self.say(Event::FellBack(reason));
-        Ok(())
     }
 
     fn climb(&mut self, request: Arc<Request>, number: u64) -> Result<(), RenderError> {
@@ -480,6 +485,8 @@ impl Worker<'_> {
         let first = rungs.iter().rposition(is_there).unwrap_or(0);
         rungs.drain(..first);
         let count = rungs.len();
+        let wanted = rungs.last().map_or(1, Rung::samples);
+        let mut sums: Vec<Option<Accumulator>> = request.looks.iter().map(|_| None).collect();
         for (i, rung) in (1..).zip(rungs) {
             let observer = Impatient {
                 shared: self.shared,
@@ -488,39 +495,90 @@ impl Worker<'_> {
                 is_first: i == 1,
                 began: Instant::now(),
             };
-            let films = self.render(&request, &rung, &observer)?;
+            let films = self.render(&request, &rung, wanted, &mut sums, &observer)?;
             self.show(&request, &films, i == count);
         }
         Ok(())
     }
 
-    /// A film for each look: one that is there, or a new one.
+    /// The scene of a look, ready to be rendered: what was ready for another camera or size is ready for this one too, and of
+    /// another scene what both have in common is kept.
+    fn prepared(
+        &mut self,
+        request: &Request,
+        side: usize,
+    ) -> Result<&mut Box<dyn Prepared>, RenderError> {
+        let look = request.looks[side];
+        let is_it = self.ready.get(side).is_some_and(|ready| {
+            Arc::ptr_eq(&ready.scene, &request.scene) && ready.look.has_rays_of(&look)
+        });
+        if !is_it {
+            let scene = Arc::new(request.scene_of(&look));
+            let prepared = match self.ready.len() > side {
+                true => {
+                    let mut ready = self.ready.remove(side);
+                    ready.prepared.update(scene)?;
+                    ready.prepared
+                }
+                false => self.renderer.prepare(scene)?,
+            };
+            let ready = Ready {
+                scene: Arc::clone(&request.scene),
+                look,
+                prepared,
+            };
+            self.ready.insert(side.min(self.ready.len()), ready);
+        }
+        Ok(&mut self.ready[side].prepared)
+    }
+
+    /// A film for each look: one that is there, or a new one. `wanted` is how many samples a pixel has in the end, `sums` are
+    /// those of the samples before.
     fn render(
         &mut self,
         request: &Request,
         rung: &Rung,
+        wanted: u32,
+        sums: &mut [Option<Accumulator>],
         observer: &dyn Observer,
     ) -> Result<Vec<Take>, RenderError> {
+        self.ready.truncate(request.looks.len());
         let mut films = Vec::with_capacity(request.looks.len());
-        for look in &request.looks {
+        for (side, look) in request.looks.iter().enumerate() {
             if let Some(take) = self.kept.find(look, rung, request.size) {
                 films.push(take.clone());
                 continue;
             }
             let own = own_rung(look, rung);
-            let scene = request.scene_of(look, &own);
+            let mut into = match (sums[side].take(), own.antialias) {
+                (Some(before), Supersample { .. }) => before,
+                (_, Supersample { filter, .. }) => {
+                    let samples = wanted.max(own.samples());
+                    Accumulator::new(own.size, Supersample { samples, filter }, &Plane::ALL)
+                }
+                (_, antialias) => Accumulator::new(own.size, antialias, &Plane::ALL),
+            };
             let began = Instant::now();
-            let frame = self.backend.renderer.render(&scene, observer)?;
+            let samples = into.samples()..own.samples();
+            let statistics = (self.prepared(request, side)?).sample(
+                &request.camera,
+                samples,
+                &mut into,
+                observer,
+            )?;
             let take = Take {
                 look: *look,
                 rung: own,
-                film: Arc::new(frame.film),
+                film: Arc::new(into.film()),
                 seconds: began.elapsed().as_secs_f64(),
-                rays: frame.statistics.rays,
-                evaluations: frame.statistics.evaluations,
+                rays: statistics.rays,
+                evaluations: statistics.evaluations,
             };
             if own.samples() == 1 {
                 self.rate = ladder::measured(self.rate, take.rays, take.seconds);
+            }
+            if into.filter().is_some() {
+                sums[side] = Some(into);
             }
             self.kept.keep(&take, request.size);
             films.push(take);
@@ -563,9 +621,8 @@ impl Worker<'_> {
 
 /// A picture of the ladder with the antialiasing that a look asks for.
 fn own_rung(look: &Look, rung: &Rung) -> Rung {
-    use zeroset_scene::settings::Antialias::{None, Supersample};
     let antialias = match (look.settings.antialias, rung.antialias) {
-        (None, _) | (_, None) => None,
+        (Antialias::None, _) | (_, Antialias::None) => Antialias::None,
         (Supersample { filter, .. }, Supersample { samples, .. }) => {
             Supersample { samples, filter }
         }

@@ -2,8 +2,8 @@ use super::*;
 use std::sync::atomic::AtomicUsize;
 use std::time::Duration;
 use zeroset_language::load::{Language, Options, load_text};
-use zeroset_scene::render::{Frame, Statistics};
-use zeroset_scene::settings::{Antialias, Filter, March};
+use zeroset_scene::render::Statistics;
+use zeroset_scene::settings::{Filter, March};
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
@@ -41,39 +41,74 @@ struct Counting {
     may_finish: Arc<AtomicBool>,
 }
 
-impl Renderer for Counting {
-    fn render_planes(
+impl Test for Counting {
+    fn sample(
         &self,
-        scene: &Scene,
-        planes: &[Plane],
+        _: &Scene,
+        into: &mut Accumulator,
         observer: &dyn Observer,
-    ) -> Result<Frame, RenderError> {
+    ) -> Result<Statistics, RenderError> {
         self.calls.fetch_add(1, Ordering::SeqCst);
-        let [width, height] = scene.settings.size;
-        while scene.settings.antialias != Antialias::None && !self.may_finish.load(Ordering::SeqCst)
-        {
+        let [width, height] = into.size();
+        while into.antialias() != Antialias::None && !self.may_finish.load(Ordering::SeqCst) {
             if observer.is_cancelled() {
                 self.cancelled.fetch_add(1, Ordering::SeqCst);
                 return Err(RenderError::Cancelled);
             }
             std::thread::sleep(Duration::from_millis(1));
         }
-        let statistics = Statistics {
+        Ok(Statistics {
             rays: u64::from(width * height),
             ..Statistics::default()
-        };
-        let film = Film::with(width, height, planes);
-        Ok(Frame { film, statistics })
+        })
     }
 }
 
-fn started(renderer: impl Renderer + Send + 'static) -> Engine {
-    let make = || {
-        Ok(Backend {
-            name: "test".into(),
-            renderer: Box::new(renderer),
-        })
-    };
+/// What a renderer of a test does.
+trait Test: Clone + Send + Sync + 'static {
+    fn sample(
+        &self,
+        scene: &Scene,
+        into: &mut Accumulator,
+        observer: &dyn Observer,
+    ) -> Result<Statistics, RenderError>;
+}
+
+struct Testing<T>(T);
+
+impl<T: Test> Renderer for Testing<T> {
+    fn name(&self) -> String {
+        "test".to_owned()
+    }
+
+    fn prepare(&self, scene: Arc<Scene>) -> Result<Box<dyn Prepared>, RenderError> {
+        Ok(Box::new(Tested(self.0.clone(), scene)))
+    }
+}
+
+struct Tested<T>(T, Arc<Scene>);
+
+impl<T: Test> Prepared for Tested<T> {
+    fn update(&mut self, scene: Arc<Scene>) -> Result<(), RenderError> {
+        self.1 = scene;
+        Ok(())
+    }
+
+    fn sample(
+        &mut self,
+        _: &Camera,
+        samples: std::ops::Range<u32>,
+        into: &mut Accumulator,
+        observer: &dyn Observer,
+    ) -> Result<Statistics, RenderError> {
+        let statistics = self.0.sample(&self.1, into, observer)?;
+        into.count(samples.len() as u32);
+        Ok(statistics)
+    }
+}
+
+fn started(renderer: impl Test) -> Engine {
+    let make = || Ok(Arc::new(Testing(renderer)) as Arc<dyn Renderer>);
     let engine = Engine::start(Box::new(make), || {}).unwrap();
     assert!(matches!(engine.wait(PATIENCE), Some(Event::Ready(name)) if name == "test"));
     engine
@@ -102,7 +137,7 @@ const BALL: &str = "show(sphere())\nrender(aa = supersample(4, filter = \"box\")
 
 #[test]
 fn pictures_come_from_coarse_to_refined() {
-    let engine = Engine::start(Box::new(|| Backend::cpu(Some(2))), || {}).unwrap();
+    let engine = Engine::start(Box::new(|| cpu(Some(2))), || {}).unwrap();
     assert!(
         matches!(engine.wait(PATIENCE), Some(Event::Ready(name)) if name.contains("2 threads"))
     );
@@ -193,7 +228,7 @@ fn what_is_only_shown_differently_takes_no_rays() {
 
 #[test]
 fn two_looks_are_two_pictures() {
-    let engine = Engine::start(Box::new(|| Backend::cpu(Some(2))), || {}).unwrap();
+    let engine = Engine::start(Box::new(|| cpu(Some(2))), || {}).unwrap();
     let mut wanted = request(BALL, [48, 48]);
     let mut other = wanted.looks[0];
     other.settings.antialias = Antialias::None;
@@ -263,15 +298,16 @@ fn what_cannot_be_rendered_is_said() {
 }
 
 /// Its device is gone.
+#[derive(Clone)]
 struct Lost;
 
-impl Renderer for Lost {
-    fn render_planes(
+impl Test for Lost {
+    fn sample(
         &self,
         _: &Scene,
-        _: &[Plane],
+        _: &mut Accumulator,
         _: &dyn Observer,
-    ) -> Result<Frame, RenderError> {
+    ) -> Result<Statistics, RenderError> {
         Err(RenderError::Device {
             reason: "it was pulled out".into(),
             advice: None,
@@ -300,15 +336,16 @@ fn a_window_that_closes_waits_for_nothing() {
 }
 
 /// Takes hours for a scene whose first object is called so, and asks; breaks down at another one.
+#[derive(Clone)]
 struct Moody;
 
-impl Renderer for Moody {
-    fn render_planes(
+impl Test for Moody {
+    fn sample(
         &self,
         scene: &Scene,
-        planes: &[Plane],
+        _: &mut Accumulator,
         observer: &dyn Observer,
-    ) -> Result<Frame, RenderError> {
+    ) -> Result<Statistics, RenderError> {
         let name = scene.objects.first().map_or("", |o| o.name.as_str());
         assert!(name != "bad", "planted");
         if name == "slow" {
@@ -317,9 +354,7 @@ impl Renderer for Moody {
             }
             return Err(RenderError::Cancelled);
         }
-        let [width, height] = scene.settings.size;
-        let (film, statistics) = (Film::with(width, height, planes), Statistics::default());
-        Ok(Frame { film, statistics })
+        Ok(Statistics::default())
     }
 }
 

@@ -1,7 +1,7 @@
 //! Opening the window.
 
 use crate::app::App;
-use crate::engine::MakeBackend;
+use crate::engine::MakeRenderer;
 use crate::loader::Explain;
 use eframe::egui::{ViewportBuilder, vec2};
 use std::path::PathBuf;
@@ -15,7 +15,7 @@ pub struct Open {
     /// Parameters, time and limits.
     pub options: Options,
     /// What renders.
-    pub backend: MakeBackend,
+    pub renderer: MakeRenderer,
     /// What a person is told of a scene that cannot be loaded.
     pub explain: Explain,
 }

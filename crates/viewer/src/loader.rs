@@ -5,7 +5,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use zeroset_language::load::{Control, Failed, Loaded, Options, Parameter, load};
+use zeroset_language::assets::Assets;
+use zeroset_language::document::Document;
+use zeroset_language::load::{Control, Failed, Loaded, Options, Parameter};
 use zeroset_language::report::Report;
 use zeroset_language::watch::{PAUSE, Watched};
 
@@ -82,6 +84,9 @@ struct Watcher {
     explain: Explain,
     watched: Watched,
     is_first: bool,
+    assets: Assets,
+    /// The files as they were read last; none where they could not be.
+    document: Option<Document>,
 }
 
 impl Watcher {
@@ -92,6 +97,8 @@ impl Watcher {
             options,
             explain,
             is_first: true,
+            assets: Assets::default(),
+            document: None,
         }
     }
 
@@ -118,8 +125,14 @@ impl Watcher {
     }
 
     /// Loads the scene. A fault of this program is a mistake in this scene, and the next one is waited for.
-    fn attempt(&self, options: &Options) -> Result<Loaded, Failed> {
-        let work = || load(&self.path, options);
+    fn attempt(&mut self, options: &Options) -> Result<Loaded, Failed> {
+        let work = || {
+            let document = match self.document.take() {
+                Some(document) => document,
+                None => Document::open(&self.path, &options.limits, &self.assets)?,
+            };
+            self.document.insert(document).scene(options)
+        };
         catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {
             let said = "the scene loader broke down; please report this scene as a bug";
             Err(Failed {
@@ -130,7 +143,11 @@ impl Watcher {
     }
 
     fn load(&mut self, is_edit: bool) -> Outcome {
-        let mut result = self.attempt(&self.options);
+        if is_edit {
+            self.document = None;
+        }
+        let options = self.options.clone();
+        let mut result = self.attempt(&options);
         if is_edit && result.is_err() && !self.options.set.is_empty() {
             // a parameter that was moved may be gone from the file, or have another range
             let plain = Options {
@@ -142,7 +159,8 @@ impl Watcher {
                     let parameter = loaded.parameters.iter().find(|p| p.name == *name);
                     parameter.is_some_and(|p| takes(p, text))
                 });
-                result = self.attempt(&self.options);
+                let options = self.options.clone();
+                result = self.attempt(&options);
             }
         }
         let files = match &result {

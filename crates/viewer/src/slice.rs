@@ -3,7 +3,7 @@
 use crate::develop::pixels;
 use crate::engine::Request;
 use eframe::egui::{Color32, ColorImage};
-use fearless_simd::{Level, dispatch};
+use fearless_simd::Level;
 use glam::Vec3;
 use std::sync::Arc;
 use zeroset_catalogue::bounds::Aabb;
@@ -193,7 +193,7 @@ impl Compiled {
                 }
             }
             let (program, workspace) = (&self.program, &mut self.workspace);
-            dispatch!(level, s => gradients(s, program.values(), workspace, n));
+            zeroset_number::at_level!(level, s => gradients(s, program.values(), workspace, n));
             for i in 0..n {
                 let (value, gradient) = self.program.shown_distance(self.workspace.gradient(i));
                 values.push(value);

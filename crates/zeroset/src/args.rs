@@ -64,6 +64,7 @@ pub(crate) enum Command {
     /// Print a scene as JSON, which every command takes in place of a script
     Expand(Expand),
     /// Print a scene as one shader: WGSL, or GLSL that runs when it is pasted into Shadertoy
+    #[cfg(feature = "shaders")]
     Export(Export),
     /// List what the scene language offers, or explain one name
     Fields(Fields),
@@ -193,6 +194,7 @@ pub(crate) struct Expand {
     pub output: Option<PathBuf>,
 }
 
+#[cfg(feature = "shaders")]
 #[derive(Debug, Args)]
 pub(crate) struct Export {
     #[command(flatten)]
@@ -207,6 +209,7 @@ pub(crate) struct Export {
     pub output: Option<PathBuf>,
 }
 
+#[cfg(feature = "shaders")]
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
 pub(crate) struct ShaderLanguage {

@@ -3,11 +3,13 @@
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
 use clap::ValueEnum;
-use std::cell::OnceCell;
 #[cfg(feature = "gpu")]
-use std::cell::RefCell;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 #[cfg(feature = "gpu")]
 use zeroset_gpu::{Choice, GpuRenderer};
+#[cfg(feature = "gpu")]
+use zeroset_scene::fallback::Fallback;
 use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::render::{Frame, Observer, RenderError, Renderer, Statistics};
 use zeroset_scene::scene::Scene;
@@ -65,38 +67,55 @@ pub(crate) struct Part {
 }
 
 /// The renderer that was asked for.
-pub(crate) struct Engine<'a> {
-    console: &'a Console,
+pub(crate) struct Engine {
     threads: Option<usize>,
     /// Made when it is needed.
-    cpu: OnceCell<CpuRenderer>,
+    cpu: Arc<OnceLock<CpuRenderer>>,
+    /// The GPU, or the CPU where it fails.
     #[cfg(feature = "gpu")]
-    gpu: RefCell<Option<GpuRenderer>>,
-    /// Whether the CPU stands in for a GPU that fails.
-    #[cfg(feature = "gpu")]
-    falls_back: bool,
+    gpu: Option<Gpu>,
 }
 
-impl<'a> Engine<'a> {
+/// The GPU, and what is known of it.
+#[cfg(feature = "gpu")]
+struct Gpu {
+    title: String,
+    renderer: Box<dyn Renderer>,
+    /// Whether the CPU stands in for it by now.
+    failed: Arc<AtomicBool>,
+}
+
+#[cfg(feature = "gpu")]
+impl Gpu {
+    fn is_there(&self) -> bool {
+        !self.failed.load(Ordering::Relaxed)
+    }
+}
+
+impl Engine {
     /// Looks for what is asked for. `adapter` is a part of a GPU's name.
     pub(crate) fn new(
         backend: Backend,
         adapter: Option<&str>,
         threads: Option<usize>,
-        console: &'a Console,
-    ) -> Result<Engine<'a>, Failure> {
+        console: &Console,
+    ) -> Result<Engine, Failure> {
+        let cpu = Arc::new(OnceLock::new());
         #[cfg(feature = "gpu")]
-        let gpu = gpu(backend, adapter)?;
+        let gpu = gpu(backend, adapter)?.map(|gpu| {
+            let falls_back = backend == Backend::Auto && adapter.is_none();
+            standing(gpu, falls_back, threads, &cpu, console)
+        });
         #[cfg(not(feature = "gpu"))]
-        refused(backend, adapter)?;
+        {
+            let _ = console;
+            refused(backend, adapter)?;
+        }
         let engine = Engine {
-            console,
             threads,
-            cpu: OnceCell::new(),
+            cpu,
             #[cfg(feature = "gpu")]
-            gpu: RefCell::new(gpu),
-            #[cfg(feature = "gpu")]
-            falls_back: backend == Backend::Auto && adapter.is_none(),
+            gpu,
         };
         if backend == Backend::Cpu {
             // a wrong number of threads is told before anything is loaded
@@ -111,26 +130,25 @@ impl<'a> Engine<'a> {
         scene: &Scene,
         planes: &[Plane],
         observer: &dyn Observer,
-        restart: &dyn Fn(),
+        restart: &(dyn Fn() + Sync),
     ) -> Result<(Frame, Used), RenderError> {
         #[cfg(feature = "gpu")]
-        {
-            let mut gpu = self.gpu.borrow_mut();
-            if let Some(renderer) = &*gpu {
-                match renderer.render_planes(scene, planes, observer) {
-                    Err(error @ RenderError::Device { .. }) if self.falls_back => {
-                        self.console
-                            .note(format_args!("{error}\nRendering on the CPU."));
-                        *gpu = None;
-                        restart();
-                    }
-                    Ok(frame) => return Ok((frame, Used::Gpu(renderer.adapter().title()))),
-                    Err(error) => return Err(error),
-                }
-            }
+        if let Some(gpu) = self.gpu.as_ref().filter(|gpu| gpu.is_there()) {
+            let watched = Watched {
+                observer,
+                failed: &gpu.failed,
+                restart,
+                told: AtomicBool::new(false),
+            };
+            let frame = gpu.renderer.render_planes(scene, planes, &watched)?;
+            let used = match gpu.is_there() {
+                true => Used::Gpu(gpu.title.clone()),
+                false => Used::Cpu,
+            };
+            return Ok((frame, used));
         }
         #[cfg(not(feature = "gpu"))]
-        let _ = (restart, self.console);
+        let _ = restart;
         let frame = self.cpu()?.render_planes(scene, planes, observer)?;
         Ok((frame, Used::Cpu))
     }
@@ -141,7 +159,7 @@ impl<'a> Engine<'a> {
         scene: &Scene,
         planes: &[Plane],
         observer: &dyn Observer,
-        restart: &dyn Fn(),
+        restart: &(dyn Fn() + Sync),
     ) -> Result<Option<Part>, RenderError> {
         if self.is_on_gpu() {
             let (frame, used) = match self.render(scene, planes, observer, restart) {
@@ -155,11 +173,8 @@ impl<'a> Engine<'a> {
                 finished: None,
             }));
         }
-        let renderer = self.cpu()?;
-        let picture = renderer.prepare(scene)?;
-        let [width, height] = scene.settings.size;
-        let mut film = Film::with(width, height, planes);
-        let part = renderer.render_part(&picture, &mut film, observer);
+        let prepared = self.cpu()?.prepare_scene(scene.clone().into())?;
+        let (part, film) = prepared.render_part(scene.settings.size, planes, observer);
         Ok(Some(Part {
             film,
             statistics: part.statistics,
@@ -170,17 +185,74 @@ impl<'a> Engine<'a> {
 
     fn is_on_gpu(&self) -> bool {
         #[cfg(feature = "gpu")]
-        return self.gpu.borrow().is_some();
+        return self.gpu.as_ref().is_some_and(Gpu::is_there);
         #[cfg(not(feature = "gpu"))]
         false
     }
 
     fn cpu(&self) -> Result<&CpuRenderer, RenderError> {
-        if let Some(renderer) = self.cpu.get() {
-            return Ok(renderer);
+        made(&self.cpu, self.threads)
+    }
+}
+
+/// The renderer on the CPU, made when it is needed.
+fn made(cpu: &OnceLock<CpuRenderer>, threads: Option<usize>) -> Result<&CpuRenderer, RenderError> {
+    if let Some(renderer) = cpu.get() {
+        return Ok(renderer);
+    }
+    let renderer = CpuRenderer::new(threads)?;
+    Ok(cpu.get_or_init(|| renderer))
+}
+
+/// A GPU that the CPU may stand in for.
+#[cfg(feature = "gpu")]
+fn standing(
+    gpu: GpuRenderer,
+    falls_back: bool,
+    threads: Option<usize>,
+    cpu: &Arc<OnceLock<CpuRenderer>>,
+    console: &Console,
+) -> Gpu {
+    let (title, failed) = (gpu.adapter().title(), Arc::new(AtomicBool::new(false)));
+    let renderer: Box<dyn Renderer> = if falls_back {
+        let (console, told) = (console.clone(), Arc::clone(&failed));
+        let tell = move |error: &RenderError| {
+            console.note(format_args!("{error}\nRendering on the CPU."));
+            told.store(true, Ordering::Relaxed);
+        };
+        let cpu = Arc::clone(cpu);
+        let make = move || Ok(Arc::new(made(&cpu, threads)?.clone()) as Arc<dyn Renderer>);
+        Box::new(Fallback::new(Arc::new(gpu), Box::new(make), Box::new(tell)))
+    } else {
+        Box::new(gpu)
+    };
+    Gpu {
+        title,
+        renderer,
+        failed,
+    }
+}
+
+/// Begins to count anew when another renderer begins anew.
+#[cfg(feature = "gpu")]
+struct Watched<'a> {
+    observer: &'a dyn Observer,
+    failed: &'a AtomicBool,
+    restart: &'a (dyn Fn() + Sync),
+    told: AtomicBool,
+}
+
+#[cfg(feature = "gpu")]
+impl Observer for Watched<'_> {
+    fn advance(&self, rays: u64, total: u64) {
+        if self.failed.load(Ordering::Relaxed) && !self.told.swap(true, Ordering::Relaxed) {
+            (self.restart)();
         }
-        let renderer = CpuRenderer::new(self.threads)?;
-        Ok(self.cpu.get_or_init(|| renderer))
+        self.observer.advance(rays, total);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.observer.is_cancelled()
     }
 }
 
@@ -230,7 +302,7 @@ pub(crate) fn refused(backend: Backend, adapter: Option<&str>) -> Result<(), Fai
 #[cfg(all(test, feature = "gpu"))]
 mod tests {
     use super::*;
-    use std::cell::Cell;
+    use std::sync::atomic::AtomicU32;
     use zeroset_gpu::testing::{Faults, with_faults};
     use zeroset_language::load::{Language, Options, load_text};
     use zeroset_scene::render::Silent;
@@ -241,11 +313,8 @@ mod tests {
     fn rendered(test: &str, falls_back: bool) -> Option<(Outcome, u32)> {
         let gpu = with_faults(test, Faults::default().with_memory(20_000))?;
         let console = Console::silent();
-        let engine = Engine {
-            gpu: RefCell::new(Some(gpu)),
-            falls_back,
-            ..Engine::new(Backend::Cpu, None, Some(1), &console).expect("the CPU")
-        };
+        let mut engine = Engine::new(Backend::Cpu, None, Some(1), &console).expect("the CPU");
+        engine.gpu = Some(standing(gpu, falls_back, Some(1), &engine.cpu, &console));
         let options = Options {
             size: Some([64, 48]),
             ..Options::default()
@@ -253,16 +322,18 @@ mod tests {
         let text = "show(sphere())";
         let loaded = load_text("a.star", text, Language::Starlark, None, &options);
         let scene = loaded.expect("a valid scene").scene;
-        let restarts = Cell::new(0);
+        let restarts = AtomicU32::new(0);
         let result = engine.render(&scene, &Plane::ALL, &Silent, &|| {
-            restarts.set(restarts.get() + 1)
+            restarts.fetch_add(1, Ordering::Relaxed);
         });
         if result.is_ok() {
             // the GPU is not asked again
-            let again = engine.render(&scene, &Plane::ALL, &Silent, &|| restarts.set(9));
+            let again = engine.render(&scene, &Plane::ALL, &Silent, &|| {
+                restarts.store(9, Ordering::Relaxed);
+            });
             assert_eq!(again.map(|(_, used)| used), Ok(Used::Cpu));
         }
-        Some((result, restarts.get()))
+        Some((result, restarts.into_inner()))
     }
 
     #[test]

@@ -60,7 +60,7 @@ pub(crate) fn cost(scene: &Scene) -> Result<Cost, RenderError> {
     let bytes = renderer.memory(scene, &[Plane::Colour]) + 12 * pixels;
     let mut plain = scene.clone();
     plain.settings.antialias = Antialias::None;
-    let picture = renderer.prepare(&plain)?;
+    let picture = renderer.prepare_scene(plain.into())?;
     let began = Instant::now();
     // rays, evaluations, seconds
     let (mut found, mut is_least) = ((1.0, 0.0, 0.0), true);
@@ -68,9 +68,8 @@ pub(crate) fn cost(scene: &Scene) -> Result<Cost, RenderError> {
         let longer = size[0].max(size[1]);
         let scaled = |n: u32| (u64::from(n) * u64::from(side) / u64::from(longer.max(1))).max(1);
         let [width, height] = size.map(|n| if longer <= side { n } else { scaled(n) as u32 });
-        let mut film = Film::new(width, height);
         let deadline = Deadline(began + MOST);
-        let part = renderer.render_part(&picture, &mut film, &deadline);
+        let (part, _) = picture.render_part([width, height], &Plane::ALL, &deadline);
         if part.is_whole || is_least {
             let rays = f64::from(width) * f64::from(height);
             found = (rays, part.spent as f64, part.statistics.seconds);
@@ -187,12 +186,11 @@ mod tests {
             let scene = scene(text);
             let estimate = cost(&scene).unwrap();
             let renderer = CpuRenderer::new(Some(2)).unwrap();
-            let picture = renderer.prepare(&scene).unwrap();
+            let picture = renderer.prepare_scene(scene.clone().into()).unwrap();
             let [width, height] = scene.settings.size;
-            let mut film = Film::new(width, height);
-            let part = renderer.render_part(
-                &picture,
-                &mut film,
+            let (part, _) = picture.render_part(
+                [width, height],
+                &Plane::ALL,
                 &Deadline(Instant::now() + Duration::from_secs(600)),
             );
             let right = part.spent as f64 / f64::from(width * height);

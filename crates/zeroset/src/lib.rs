@@ -10,7 +10,7 @@
 //! | [`language`] | scene files |
 //! | [`shade`] | what is seen and how it looks |
 //! | [`trace`] | the renderer on the CPU |
-//! | [`shader`] | shaders for any scene, in WGSL and GLSL |
+//! | `shader` | shaders for any scene, in WGSL and GLSL, with the feature `shaders` |
 //! | `gpu` | the renderer on the GPU, with the feature of that name |
 //! | [`output`] | pictures and files |
 //! | [`section`] | fields on a plane |
@@ -54,5 +54,6 @@ pub use zeroset_number as number;
 pub use zeroset_output as output;
 pub use zeroset_scene as scene;
 pub use zeroset_shade as shade;
+#[cfg(feature = "shaders")]
 pub use zeroset_shader as shader;
 pub use zeroset_trace as trace;

@@ -92,6 +92,7 @@ fn run(command: &Command, console: &Console) -> Result<(), Failure> {
         Command::Render(args) => render::run(args, console),
         Command::Check(args) => command::check::run(args, console),
         Command::Expand(args) => command::expand::run(args, console),
+        #[cfg(feature = "shaders")]
         Command::Export(args) => command::export::run(args, console),
         Command::Slice(args) => command::slice::run(args, console),
         Command::Fields(args) => command::fields::run(args, console),
@@ -128,9 +129,14 @@ fn left_out(error: &clap::Error) -> Option<&'static str> {
         _ => return None,
     };
     let window = given == "view" || scene_as_command(error).is_some();
-    [("window", window), ("gpu", given == "gpu")]
-        .into_iter()
-        .find_map(|(feature, wanted)| wanted.then_some(feature))
+    let shaders = given == "export";
+    [
+        ("window", window),
+        ("gpu", given == "gpu"),
+        ("shaders", shaders),
+    ]
+    .into_iter()
+    .find_map(|(feature, wanted)| wanted.then_some(feature))
 }
 
 /// `--color`, before the command line is read: its own messages want to know.

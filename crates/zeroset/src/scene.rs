@@ -7,8 +7,10 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, Read};
 use std::path::Path;
+use zeroset_language::assets::Assets;
+use zeroset_language::document::Document;
 use zeroset_language::limits::Limits;
-use zeroset_language::load::{Failed, Loaded, Options, load};
+use zeroset_language::load::{Failed, Loaded, Options};
 use zeroset_output::display::LINES;
 
 /// What the flags say about loading.
@@ -103,14 +105,32 @@ pub(crate) fn loaded(
     Ok(attempt(args, options, console)?)
 }
 
+/// Reads the scene, to load it more than once.
+pub(crate) fn document(args: &SceneArgs, options: &Options) -> Result<Document, Failure> {
+    present(args)?;
+    let document = Document::open(&args.scene, &options.limits, &Assets::default());
+    Ok(document?)
+}
+
 /// As [`loaded`]; a failure names the files that it came from.
 pub(crate) fn attempt(
     args: &SceneArgs,
     options: &Options,
     console: &Console,
 ) -> Result<Loaded, Failed> {
+    let mut document = Document::open(&args.scene, &options.limits, &Assets::default())?;
+    evaluated(args, &mut document, options, console)
+}
+
+/// The scene of a document, for other parameters or another time; says what it prints.
+pub(crate) fn evaluated(
+    args: &SceneArgs,
+    document: &mut Document,
+    options: &Options,
+    console: &Console,
+) -> Result<Loaded, Failed> {
     let start = std::time::Instant::now();
-    let loaded = load(&args.scene, options)?;
+    let loaded = document.scene(options)?;
     say_printed(&loaded.log, console);
     for warning in &loaded.warnings {
         console.warn(warning);

@@ -1,6 +1,6 @@
 //! Sections: a field on a plane across an axis.
 
-use fearless_simd::{Level, dispatch};
+use fearless_simd::Level;
 use zeroset_eval::{BATCH, Workspace, gradients};
 use zeroset_field::program::Program;
 use zeroset_output::view::section::Section;
@@ -63,7 +63,7 @@ impl Plane {
                     lane.0[i] = x as f32;
                 }
             }
-            dispatch!(level, s => gradients(s, program.values(), &mut workspace, n));
+            zeroset_number::at_level!(level, s => gradients(s, program.values(), &mut workspace, n));
             let [(right, _), (up, _)] = self.directions();
             for i in 0..n {
                 let (value, gradient) = program.shown_distance(workspace.gradient(i));

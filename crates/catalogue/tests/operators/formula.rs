@@ -80,7 +80,7 @@ pub fn numbers<F: Formula>() -> Numbers {
             });
             F::eval(q, Args::new(&Data::from(a))).map(|r| (r.v, r.d))
         },
-        lanes: |level, q, a| zeroset_number::at_level!(@avx2 level, s => lanes::<F, _>(s, q, a)),
+        lanes: |level, q, a| zeroset_number::at_level!(level, s => lanes::<F, _>(s, q, a)),
         range: |q, a| F::eval(q, Args::new(&Data::from(a))),
         slope: |q, s, a| {
             let q = std::array::from_fn(|i| Slope {

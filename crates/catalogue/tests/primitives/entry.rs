@@ -60,7 +60,7 @@ pub fn entry<P: Primitive>() -> Entry {
             let d = P::distance(Dual::point(v3(p[0], p[1], p[2])), Args::new(&Data::from(a)));
             (d.v, d.d)
         },
-        lanes: |level, points, a| zeroset_number::at_level!(@avx2 level, s => lanes::<P, _>(s, points, a)),
+        lanes: |level, points, a| zeroset_number::at_level!(level, s => lanes::<P, _>(s, points, a)),
         range: |b, a| P::distance(v3(b[0], b[1], b[2]), Args::new(&Data::from(a))),
         shader: shader::<P>,
         bounds: P::bounds,

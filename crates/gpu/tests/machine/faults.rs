@@ -1,6 +1,6 @@
 //! What drivers do rarely, brought about on purpose.
 
-use crate::{Counting, check, toy};
+use crate::{Counting, RenderInto, check, toy};
 use std::sync::PoisonError;
 use std::time::{Duration, Instant};
 use zeroset_gpu::testing::{self, Faults, with_faults};

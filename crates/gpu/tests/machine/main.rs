@@ -4,9 +4,11 @@ mod faults;
 mod pictures;
 
 use std::sync::Mutex;
-use zeroset_gpu::Job;
+use zeroset_gpu::{GpuError, GpuRenderer, Job};
+use zeroset_scene::accumulator::Accumulator;
 use zeroset_scene::film::{Film, Plane};
-use zeroset_scene::render::Observer;
+use zeroset_scene::render::{Observer, Statistics};
+use zeroset_scene::settings::{Antialias, Filter};
 use zeroset_shader::layout::{Frame, LightSum, Sample, Shared, SurfaceSum, Tile};
 
 /// A job whose pictures are known: see `toy.wgsl`. `work` makes each ray dearer.
@@ -29,12 +31,41 @@ fn toy(size: [u32; 2], samples: u32, work: f32) -> Job {
     Job {
         source: source.into(),
         frame,
-        params: vec![work],
+        params: vec![work].into(),
         code: vec![7].into(),
-        table: vec![[0.7; 4]],
+        table: vec![[0.7; 4]].into(),
         registers: 0,
         in_turns: false,
         turns: zeroset_shader::Turns::default(),
+    }
+}
+
+/// Renders a job into a film, as far as it has planes.
+trait RenderInto {
+    fn render_into(
+        &self,
+        job: &Job,
+        film: &mut Film,
+        observer: &dyn Observer,
+    ) -> Result<Statistics, GpuError>;
+}
+
+impl RenderInto for GpuRenderer {
+    fn render_into(
+        &self,
+        job: &Job,
+        film: &mut Film,
+        observer: &dyn Observer,
+    ) -> Result<Statistics, GpuError> {
+        let planes: Vec<Plane> = Plane::ALL.into_iter().filter(|p| film.has(*p)).collect();
+        let antialias = Antialias::Supersample {
+            samples: job.samples(),
+            filter: Filter::Box,
+        };
+        let mut sums = Accumulator::new(job.frame.size, antialias, &planes);
+        let statistics = self.sample(job, 0..job.samples(), &mut sums, observer)?;
+        *film = sums.into_film();
+        Ok(statistics)
     }
 }
 

@@ -1,4 +1,4 @@
-use crate::{Counting, check, toy};
+use crate::{Counting, RenderInto, check, toy};
 use zeroset_gpu::{GpuError, testing};
 use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::render::{RenderError, Silent};

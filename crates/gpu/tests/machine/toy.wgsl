@@ -77,12 +77,13 @@ fn is_cut_short() -> bool {
     if id.x >= tile.size.x || id.y >= tile.size.y { return; }
     let p = tile.corner + id.xy;
     let at = (p.y - frame.band.z) * frame.size.x + p.x;
-    if frame.planes_a.x != 0xffffffffu {
-        let to = frame.planes_a.x + 3u * at;
-        let colour = light_sums[at].colour / light_sums[at].weight;
+    if frame.sums_a.x != 0xffffffffu {
+        let to = frame.sums_a.x + 3u * at;
+        let colour = light_sums[at].colour;
         planes[to] = colour.x;
         planes[to + 1u] = colour.y;
         planes[to + 2u] = colour.z;
+        planes[frame.sums_a.z + at] = light_sums[at].weight;
     }
-    if frame.planes_a.z != 0xffffffffu { planes[frame.planes_a.z + at] = surface_sums[at].depth; }
+    if frame.sums_b.x != 0xffffffffu { planes[frame.sums_b.x + at] = surface_sums[at].depth; }
 }

@@ -63,7 +63,7 @@ fn leave(ray: Ray, slope: f32, constant: f32) -> f32 {
 
 /// Whether anything but colour and coverage is asked for.
 fn wants_detail() -> bool {
-    return frame.planes_c.z != 0u;
+    return frame.detail != 0u;
 }
 
 /// How much narrower the footprint of a pixel is along a ray than in the middle of the picture, for the same distance.

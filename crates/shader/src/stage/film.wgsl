@@ -11,7 +11,7 @@ fn gather(@builtin(global_invocation_id) id: vec3u) {
     let pixel = tile.corner + id.xy;
     let at = (pixel.y - frame.band.z) * frame.size.x + pixel.x;
     var light = LightSum(vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
-    if (tile.index > 0u) {
+    if (tile.index > frame.first_ray) {
         light = light_sums[at];
     }
     var reach = 0;
@@ -36,7 +36,6 @@ fn gather(@builtin(global_invocation_id) id: vec3u) {
     if (wants_detail()) {
         let own = samples[(pixel.y - frame.band.x) * frame.size.x + pixel.x];
         light.steps += own.steps;
-        light.rays += 1.0;
         light.hits += select(0.0, 1.0, own.depth >= 0.0);
         gather_surface(at, own);
     }
@@ -46,7 +45,7 @@ fn gather(@builtin(global_invocation_id) id: vec3u) {
 /// Adds a pixel's own ray to the sums of what it hit.
 fn gather_surface(at: u32, own: Sample) {
     var surface = SurfaceSum(vec3f(0.0), -1.0, vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
-    if (tile.index > 0u) {
+    if (tile.index > frame.first_ray) {
         surface = surface_sums[at];
     }
     if (own.depth >= 0.0) {
@@ -77,7 +76,7 @@ fn put3(place: u32, at: u32, value: vec3f) {
     }
 }
 
-/// Turns sums into the planes that are asked for, in the order of the film's planes.
+/// Writes the sums that are asked for, in the order in which they are kept.
 @compute @workgroup_size(8, 8, 1)
 fn develop(@builtin(global_invocation_id) id: vec3u) {
     frame = given_frame;
@@ -88,23 +87,20 @@ fn develop(@builtin(global_invocation_id) id: vec3u) {
     let pixel = tile.corner + id.xy;
     let at = (pixel.y - frame.band.z) * frame.size.x + pixel.x;
     let light = light_sums[at];
-    let weight = max(light.weight, 1e-6);
-    // the filter's negative lobes can make a dark pixel beside a bright one less than black
-    put3(frame.planes_a.x, at, max(light.colour / weight, vec3f(0.0)));
-    put(frame.planes_a.y, at, clamp(light.cover / weight, 0.0, 1.0));
+    put3(frame.sums_a.x, at, light.colour);
+    put(frame.sums_a.y, at, light.cover);
+    put(frame.sums_a.z, at, light.weight);
     if (!wants_detail()) {
         return;
     }
     let surface = surface_sums[at];
-    let hits = max(light.hits, 1.0);
-    let nothing = light.hits == 0.0;
-    put(frame.planes_a.z, at, select(surface.depth, frame.miss, nothing));
-    let length_of = length(surface.normal);
-    put3(frame.planes_a.w, at, select(vec3f(0.0), surface.normal / max(length_of, 1e-20), length_of > 0.0));
-    put3(frame.planes_b.x, at, surface.albedo / hits);
-    put(frame.planes_b.y, at, select(surface.open / hits, 1.0, nothing));
-    put(frame.planes_b.z, at, select(surface.shadow / hits, 1.0, nothing));
-    put(frame.planes_b.w, at, light.steps / light.rays);
-    put(frame.planes_c.x, at, surface.residual);
-    put(frame.planes_c.y, at, surface.object);
+    put(frame.sums_a.w, at, light.hits);
+    put(frame.sums_b.x, at, select(surface.depth, frame.miss, light.hits == 0.0));
+    put3(frame.sums_b.y, at, surface.normal);
+    put3(frame.sums_b.z, at, surface.albedo);
+    put(frame.sums_b.w, at, surface.open);
+    put(frame.sums_c.x, at, surface.shadow);
+    put(frame.sums_c.y, at, light.steps);
+    put(frame.sums_c.z, at, surface.residual);
+    put(frame.sums_c.w, at, surface.object);
 }

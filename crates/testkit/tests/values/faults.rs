@@ -329,14 +329,15 @@ fn faults_in_shaders_are_noticed() {
     for (what, from, to, name) in IN_SHADERS {
         let planted = std::cell::Cell::new(false);
         let draw = |scene: &Scene| {
-            let mut job = gpu.prepare(scene).expect("a job");
+            let mut job = gpu.job(scene).expect("a job");
             planted.set(planted.get() || job.source.contains(from));
             job.source = job.source.replace(from, to).into();
-            let [width, height] = scene.settings.size;
-            let mut film = Film::new(width, height);
-            gpu.render_into(&job, &mut film, &Silent)
+            let settings = scene.settings;
+            let mut sums = Accumulator::new(settings.size, settings.antialias, &Plane::ALL);
+            let samples = 0..sums.wanted();
+            gpu.sample(&job, samples, &mut sums, &Silent)
                 .expect("a picture");
-            film
+            sums.into_film()
         };
         let noticed = (check_named(name).run)(&draw).is_err();
         assert!(planted.get(), "no `{from}` in a shader of {name}");

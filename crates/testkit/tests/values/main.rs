@@ -50,7 +50,9 @@ fn on(renderer: &dyn Renderer, scene: &Scene) -> Film {
 }
 
 fn on_plain(renderer: &CpuRenderer, scene: &Scene) -> Film {
-    let picture = renderer.prepare(scene).expect("a program");
+    let picture = renderer
+        .prepare_scene(scene.clone().into())
+        .expect("a program");
     let program = picture.program();
     let quality = Quality::of(program, scene);
     plain::render(scene, &quality, || Compiled::new(program, None))

@@ -1,6 +1,6 @@
 //! What the plain renderer asks of a field.
 
-use fearless_simd::{Level, dispatch};
+use fearless_simd::Level;
 use glam::Vec3;
 use zeroset_eval::{Point, Workspace};
 use zeroset_field::program::Program;
@@ -69,7 +69,7 @@ impl Probe for Compiled<'_> {
         for (lane, c) in work.points_mut().iter_mut().zip(p.to_array()) {
             lane.0.fill(c);
         }
-        dispatch!(Level::new(), s => zeroset_eval::marks(s, self.program.marks(), work, 1));
+        zeroset_number::at_level!(Level::new(), s => zeroset_eval::marks(s, self.program.marks(), work, 1));
         let m = work.marks();
         Mark {
             object: m.object.0[0],

@@ -92,6 +92,11 @@ fn slow() -> Vec<(&'static str, Scene)> {
     ]
 }
 
+/// All of a scene, or as much as there is when the observer ends it.
+fn rendered(picture: &PreparedScene, observer: &dyn Observer) -> (Part, Film) {
+    picture.render_part(picture.scene.settings.size, &Plane::ALL, observer)
+}
+
 /// Without this the next test would prove nothing.
 #[test]
 fn every_evaluation_is_asked_for_before() {
@@ -122,9 +127,8 @@ fn every_evaluation_is_asked_for_before() {
         }
         for normals in [Normals::Exact, Normals::Samples26, Normals::Tetrahedron] {
             scene.settings.normals = normals;
-            let picture = renderer.prepare(&scene).unwrap();
-            let mut film = Film::new(24, 16);
-            let part = renderer.render_part(&picture, &mut film, &Silent);
+            let picture = renderer.prepare_scene(Arc::new(scene.clone())).unwrap();
+            let (part, _) = rendered(&picture, &Silent);
             assert!(part.is_whole && part.spent > 0, "{name}");
             assert_eq!(part.spent, part.statistics.evaluations.total(), "{name}");
         }
@@ -136,20 +140,18 @@ fn work_ends_soon_after_it_is_not_wanted() {
     for threads in [1, 3] {
         let renderer = CpuRenderer::new(Some(threads)).unwrap();
         for (name, scene) in slow() {
-            let picture = renderer.prepare(&scene).unwrap();
+            let picture = renderer.prepare_scene(Arc::new(scene.clone())).unwrap();
             let instructions = picture.program.structure().values.instructions.len() as u64;
             for asked in [1, 25, 60] {
-                let mut film = Film::new(512, 512);
-                let observer = Impatient::after(asked);
-                let part = renderer.render_part(&picture, &mut film, &observer);
+                let (part, _) = rendered(&picture, &Impatient::after(asked));
                 assert!(!part.is_whole, "{name}");
                 // between two questions lies at most this; 250 ms would be some thousand times as much
                 // (the search of a ray that ran out of steps is one piece of work)
                 let most = 3 * INTERVAL / instructions + BATCH as u64;
                 let most = most * (asked + threads as u64 + 1);
                 assert!(part.spent <= most, "{name}: {} of {most}", part.spent);
-                let error = renderer.render_into(&picture, &mut film, &Impatient::after(0));
-                assert_eq!(error, Err(RenderError::Cancelled), "{name}");
+                let error = renderer.render(&scene, &Impatient::after(0)).err();
+                assert_eq!(error, Some(RenderError::Cancelled), "{name}");
             }
         }
     }
@@ -168,13 +170,12 @@ fn tiles_of_a_part_are_those_of_the_whole() {
         },
     ] {
         scene.settings.antialias = antialias;
-        let picture = renderer.prepare(&scene).unwrap();
-        let (mut whole, mut film) = (Film::new(200, 100), Film::new(200, 100));
-        assert!(renderer.render_part(&picture, &mut whole, &Silent).is_whole);
+        let picture = renderer.prepare_scene(Arc::new(scene.clone())).unwrap();
+        let (part, whole) = rendered(&picture, &Silent);
+        assert!(part.is_whole);
         let (count, mut seen) = (Area::count([200, 100]), 0);
         for asked in (1..).step_by(9) {
-            let observer = Impatient::after(asked);
-            let part = renderer.render_part(&picture, &mut film, &observer);
+            let (part, film) = rendered(&picture, &Impatient::after(asked));
             assert_eq!(part.is_whole, part.finished.len() == count);
             for plane in Plane::ALL {
                 let channels = plane.channels();
@@ -197,4 +198,64 @@ fn tiles_of_a_part_are_those_of_the_whole() {
         }
         assert!(seen > 1, "{seen}");
     }
+}
+
+/// Samples that are added in turns are the samples that are taken at once, up to the order of additions.
+#[test]
+fn samples_can_be_added_later() {
+    let renderer = CpuRenderer::new(Some(2)).unwrap();
+    let mut scene = sphere_box_ground();
+    scene.settings.size = [100, 70];
+    scene.settings.antialias = Antialias::Supersample {
+        samples: 7,
+        filter: Filter::Mitchell,
+    };
+    let camera = scene.camera;
+    let at_once = renderer.render(&scene, &Silent).unwrap().film;
+    let settings = scene.settings;
+    let mut prepared = renderer.prepare(Arc::new(scene)).unwrap();
+    let mut sums = Accumulator::new(settings.size, settings.antialias, &Plane::ALL);
+    for samples in [0..1, 1..4, 4..7] {
+        prepared
+            .sample(&camera, samples, &mut sums, &Silent)
+            .unwrap();
+    }
+    assert_eq!(sums.samples(), 7);
+    let in_turns = sums.into_film();
+    for plane in Plane::ALL {
+        let pairs = at_once.plane(plane).iter().zip(in_turns.plane(plane));
+        for (a, b) in pairs.filter(|(a, _)| a.is_finite()) {
+            assert!(
+                (a - b).abs() <= 1e-4 * a.abs().max(1.0),
+                "{plane:?}: {a}, {b}"
+            );
+        }
+    }
+}
+
+/// What a scene is updated to is what is rendered, whether or not its field is another one.
+#[test]
+fn updated_scenes_are_new_scenes() {
+    let renderer = CpuRenderer::new(Some(2)).unwrap();
+    let mut scene = sphere_box_ground();
+    scene.settings.size = [64, 48];
+    let mut prepared = renderer.prepare(Arc::new(scene.clone())).unwrap();
+    let mut check = |scene: &Scene| {
+        let settings = scene.settings;
+        prepared.update(Arc::new(scene.clone())).unwrap();
+        let mut sums = Accumulator::new(settings.size, settings.antialias, &Plane::ALL);
+        let samples = 0..sums.wanted();
+        prepared
+            .sample(&scene.camera, samples, &mut sums, &Silent)
+            .unwrap();
+        let fresh = renderer.render(scene, &Silent).unwrap().film;
+        assert!(sums.into_film() == fresh);
+    };
+    check(&scene);
+    scene.settings.occlusion = Occlusion::None;
+    scene.lights.clear();
+    check(&scene);
+    let ball = Field::primitive(&catalogue().primitives[0], vec![0.4]).unwrap();
+    scene.objects[0].field = ball;
+    check(&scene);
 }

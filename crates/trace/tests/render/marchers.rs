@@ -45,7 +45,7 @@ fn stream_and_plain_agree() {
 fn oracle(scene: &Scene) -> Vec<Option<f64>> {
     let picture = CpuRenderer::new(Some(1))
         .expect("threads")
-        .prepare(scene)
+        .prepare_scene(scene.clone().into())
         .map(|p| p.program().clone());
     let program = picture.expect("a program");
     let [width, height] = scene.settings.size;

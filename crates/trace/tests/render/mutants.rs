@@ -41,7 +41,9 @@ impl Probe for Faulty<'_> {
 
 fn faulty(scene: &Scene, value: f32, gradient: f32) -> Film {
     let renderer = CpuRenderer::new(Some(1)).expect("threads");
-    let picture = renderer.prepare(scene).expect("a program");
+    let picture = renderer
+        .prepare_scene(scene.clone().into())
+        .expect("a program");
     let program = picture.program();
     plain::render(scene, &Quality::of(program, scene), || Faulty {
         right: Compiled::new(program, None),

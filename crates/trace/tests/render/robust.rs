@@ -67,19 +67,14 @@ fn threads_do_not_change_the_picture() {
 fn a_second_rendering_is_equal() {
     let scene = blend();
     let renderer = CpuRenderer::new(Some(2)).expect("threads");
-    let picture = renderer.prepare(&scene).expect("a program");
-    let mut films = [Film::new(96, 72), Film::new(96, 72)];
-    for film in &mut films {
-        renderer
-            .render_into(&picture, film, &Silent)
-            .expect("a picture");
-    }
+    let picture = renderer
+        .prepare_scene(scene.clone().into())
+        .expect("a program");
+    let rendered = |planes| picture.render_part([96, 72], planes, &Silent).1;
+    let films = [rendered(&Plane::ALL), rendered(&Plane::ALL)];
     assert!(bits(&films[0]) == bits(&films[1]));
     // with some planes only, those are equal
-    let mut colour = Film::with(96, 72, &[Plane::Colour]);
-    renderer
-        .render_into(&picture, &mut colour, &Silent)
-        .expect("a picture");
+    let colour = rendered(&[Plane::Colour]);
     assert_eq!(colour.plane(Plane::Colour), films[0].plane(Plane::Colour));
 }
 

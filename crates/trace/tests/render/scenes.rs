@@ -135,7 +135,9 @@ pub fn stream(scene: &Scene) -> Film {
 /// The plain renderer's picture.
 pub fn reference(scene: &Scene) -> Film {
     let renderer = CpuRenderer::new(Some(1)).expect("threads");
-    let picture = renderer.prepare(scene).expect("a program");
+    let picture = renderer
+        .prepare_scene(scene.clone().into())
+        .expect("a program");
     let program = picture.program();
     plain::render(scene, &Quality::of(program, scene), || {
         Compiled::new(program, None)

@@ -365,7 +365,9 @@ fn rays_never_begin_behind_a_surface() {
 fn behind(scene: &Scene) -> usize {
     let film = stream(scene);
     let renderer = CpuRenderer::new(Some(1)).expect("threads");
-    let picture = renderer.prepare(scene).expect("a program");
+    let picture = renderer
+        .prepare_scene(scene.clone().into())
+        .expect("a program");
     let [width, height] = scene.settings.size;
     let (slope, constant) = scene.camera.pixel_width(height);
     let mut bad = 0;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 use zeroset_language::load::{Language, Options, load_text};
-use zeroset_viewer::engine::{Backend, Engine, Event};
+use zeroset_viewer::engine::{Engine, Event, cpu};
 use zeroset_viewer::loader::Outcome;
 use zeroset_viewer::session::Session;
 
@@ -42,7 +42,7 @@ pub(crate) fn rendered(prepare: impl FnOnce(&mut Session)) -> Session {
     let mut session = session();
     session.refine = false;
     prepare(&mut session);
-    let engine = Engine::start(Box::new(|| Backend::cpu(Some(2))), || {}).expect("a thread");
+    let engine = Engine::start(Box::new(|| cpu(Some(2))), || {}).expect("a thread");
     engine.ask(session.to_render([160, 120]).expect("a scene"));
     loop {
         match engine.wait(Duration::from_secs(60)) {

@@ -1,6 +1,6 @@
 //! `bench eval`: one program over SIMD batches and one point at a time, on one thread.
 
-use fearless_simd::{Level, dispatch};
+use fearless_simd::Level;
 use serde::Serialize;
 use std::hint::black_box;
 use std::time::Instant;
@@ -49,11 +49,11 @@ pub(crate) fn eval(program: &Program) -> Eval {
     // in turn, so that a machine that changes its pace changes all three
     for _ in 0..RUNS {
         values = values.min(per_point(BATCHES, || {
-            dispatch!(level, s => zeroset_eval::values(s, program.values(), &mut w, BATCH));
+            zeroset_number::at_level!(level, s => zeroset_eval::values(s, program.values(), &mut w, BATCH));
             black_box(w.values());
         }));
         gradients = gradients.min(per_point(BATCHES / 4, || {
-            dispatch!(level, s => zeroset_eval::gradients(s, program.values(), &mut w, BATCH));
+            zeroset_number::at_level!(level, s => zeroset_eval::gradients(s, program.values(), &mut w, BATCH));
             black_box(w.gradients());
         }));
         scalar = scalar.min(per_point(BATCHES / 16, || {

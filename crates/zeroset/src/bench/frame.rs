@@ -62,7 +62,7 @@ impl Stages {
 /// Measures a scene.
 pub(crate) fn frame(scene: &Scene, threads: usize) -> Result<Frames, RenderError> {
     let renderer = CpuRenderer::new(Some(threads))?;
-    let picture = renderer.prepare(scene)?;
+    let picture = renderer.prepare_scene(scene.clone().into())?;
     let program = picture.program();
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
@@ -72,13 +72,13 @@ pub(crate) fn frame(scene: &Scene, threads: usize) -> Result<Frames, RenderError
             reason: e.to_string(),
         })?;
     let size = scene.settings.size;
-    let mut film = Film::with(size[0], size[1], &[Plane::Colour]);
+    let mut film = Film::new(0, 0);
     let (mut streamed, mut plain_time) = (f64::MAX, f64::MAX);
     let mut reference = None;
     for _ in 0..PLAIN {
         for _ in 0..STREAMED {
             let start = Instant::now();
-            renderer.render_into(&picture, &mut film, &Silent)?;
+            film = picture.render_part(size, &[Plane::Colour], &Silent).1;
             streamed = streamed.min(start.elapsed().as_secs_f64());
         }
         let start = Instant::now();

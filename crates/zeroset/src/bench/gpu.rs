@@ -64,28 +64,33 @@ pub(crate) fn frame(
     gpu: &GpuRenderer,
 ) -> Result<GpuFrames, RenderError> {
     let cpu = CpuRenderer::new(Some(threads))?;
-    let picture = cpu.prepare(scene)?;
-    let job = gpu.prepare(scene)?;
-    let [width, height] = scene.settings.size;
-    let film = || Film::with(width, height, &[Plane::Colour]);
-    let (mut by_cpu, mut by_gpu) = (film(), film());
+    let picture = cpu.prepare_scene(scene.clone().into())?;
+    let job = gpu.job(scene)?;
+    let settings = scene.settings;
+    let by_the_gpu = || {
+        let mut sums = Accumulator::new(settings.size, settings.antialias, &[Plane::Colour]);
+        let samples = 0..sums.wanted();
+        let statistics = gpu.sample(&job, samples, &mut sums, &Silent)?;
+        Ok::<_, RenderError>((statistics.evaluations, sums.into_film()))
+    };
+    let mut by_cpu = Film::new(0, 0);
     let (mut best, mut compile, mut longest) = (None::<Timings>, 0.0, 0.0);
     let (mut cpu_seconds, mut pictures) = (f64::MAX, 0);
-    let mut evaluations = gpu.render_into(&job, &mut by_gpu, &Silent)?.evaluations;
+    let (mut evaluations, mut by_gpu) = by_the_gpu()?;
     if let Some(first) = gpu.timings() {
         compile = first.compile;
     }
     let began = Instant::now();
     while pictures < PICTURES && (pictures < LEAST || began.elapsed() < LONG) {
-        evaluations = gpu.render_into(&job, &mut by_gpu, &Silent)?.evaluations;
+        (evaluations, by_gpu) = by_the_gpu()?;
         if let Some(timings) = gpu.timings() {
             longest = f64::max(longest, timings.longest);
             if best.as_ref().is_none_or(|b| timings.wall < b.wall) {
                 best = Some(timings);
             }
         }
-        let seconds = cpu.render_into(&picture, &mut by_cpu, &Silent)?.seconds;
-        cpu_seconds = cpu_seconds.min(seconds);
+        let (part, film) = picture.render_part(settings.size, &[Plane::Colour], &Silent);
+        (cpu_seconds, by_cpu) = (cpu_seconds.min(part.statistics.seconds), film);
         pictures += 1;
     }
     let best = best.ok_or_else(|| RenderError::Device {

@@ -94,7 +94,7 @@ pub(crate) fn march(scene: &Scene) -> Result<Marches, RenderError> {
 /// Pixels whose middle and corners all hit in the reference: those that are not within half a pixel of a silhouette.
 fn surely_hit(renderer: &CpuRenderer, scene: &Scene) -> Result<Vec<bool>, RenderError> {
     use rayon::prelude::*;
-    let picture = renderer.prepare(scene)?;
+    let picture = renderer.prepare_scene(scene.clone().into())?;
     let program = picture.program();
     let hits = |camera: &Camera, x: f32, y: f32| {
         let (o, d) = camera.ray(x, y, [SIDE, SIDE]);

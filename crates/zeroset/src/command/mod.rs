@@ -4,6 +4,7 @@ pub(crate) mod check;
 pub(crate) mod compare;
 pub(crate) mod completions;
 pub(crate) mod expand;
+#[cfg(feature = "shaders")]
 pub(crate) mod export;
 pub(crate) mod fields;
 #[cfg(feature = "gpu")]

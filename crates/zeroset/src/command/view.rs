@@ -3,7 +3,9 @@
 use crate::args::View;
 use crate::console::plain_report;
 use crate::failure::{Exit, Failure};
-use zeroset_viewer::engine::{Backend, MakeBackend};
+use std::sync::Arc;
+use zeroset_scene::render::Renderer;
+use zeroset_viewer::engine::{MakeRenderer, cpu};
 use zeroset_viewer::{Open, open};
 
 /// Opens the window, and returns when it is closed. Ctrl-C ends the process: what the window saves is whole or not there,
@@ -14,7 +16,7 @@ pub(crate) fn run(args: &View) -> Result<(), Failure> {
     let window = Open {
         scene: args.scene.scene.clone(),
         options,
-        backend: backend(args)?,
+        renderer: renderer(args)?,
         explain: |failed| plain_report(failed.report.as_ref()),
     };
     open(window).map_err(|error| Failure::with_help(Exit::Job, error.to_string(), error.advice()))
@@ -22,22 +24,18 @@ pub(crate) fn run(args: &View) -> Result<(), Failure> {
 
 /// What renders. A GPU that is asked for must be there before the window opens; one that may be there is looked for while
 /// it opens.
-fn backend(args: &View) -> Result<MakeBackend, Failure> {
-    use crate::backend::{Backend as Asked, gpu};
+fn renderer(args: &View) -> Result<MakeRenderer, Failure> {
+    use crate::backend::{Backend, gpu};
     let threads = args.threads.map(usize::from);
-    let on_gpu = |renderer: zeroset_gpu::GpuRenderer| Backend {
-        name: renderer.adapter().title(),
-        renderer: Box::new(renderer),
-    };
-    if args.backend == Asked::Auto && args.adapter.is_none() {
-        return Ok(Box::new(move || match gpu(Asked::Auto, None) {
-            Ok(Some(renderer)) => Ok(on_gpu(renderer)),
-            _ => Backend::cpu(threads),
+    if args.backend == Backend::Auto && args.adapter.is_none() {
+        return Ok(Box::new(move || match gpu(Backend::Auto, None) {
+            Ok(Some(renderer)) => Ok(Arc::new(renderer) as Arc<dyn Renderer>),
+            _ => cpu(threads),
         }));
     }
     let renderer = gpu(args.backend, args.adapter.as_deref())?;
     Ok(Box::new(move || match renderer {
-        Some(renderer) => Ok(on_gpu(renderer)),
-        None => Backend::cpu(threads),
+        Some(renderer) => Ok(Arc::new(renderer) as Arc<dyn Renderer>),
+        None => cpu(threads),
     }))
 }

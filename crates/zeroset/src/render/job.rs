@@ -29,7 +29,7 @@ pub(crate) struct Job<'a> {
     pub(crate) args: &'a Render,
     pub(crate) console: &'a Console,
     pub(crate) options: Options,
-    engine: Engine<'a>,
+    engine: Engine,
 }
 
 impl<'a> Job<'a> {

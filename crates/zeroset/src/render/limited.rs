@@ -113,12 +113,12 @@ impl Observer for Deadline<'_> {
 /// # Errors
 /// The scene cannot be rendered, not even the first small picture is finished in time, `progress` says to stop.
 pub(crate) fn render(
-    engine: &Engine<'_>,
+    engine: &Engine,
     scene: &Scene,
     planes: &[Plane],
     limit: Duration,
     progress: &Progress<'_>,
-    restart: &dyn Fn(),
+    restart: &(dyn Fn() + Sync),
 ) -> Result<(Frame, Used, Option<Lack>), Failure> {
     let began = Instant::now();
     let deadline = Deadline {

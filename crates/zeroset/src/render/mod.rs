@@ -29,17 +29,19 @@ pub(crate) fn run(args: &Render, console: &Console) -> Result<(), Failure> {
     }
 }
 
-/// Renders frame by frame; each loads the scene again at its own time.
+/// Renders frame by frame, each at its own time.
 fn run_frames(job: &Job<'_>, frames: std::ops::Range<u32>) -> Result<(), Failure> {
     let start = Instant::now();
     let (count, mut unfinished) = (frames.len(), false);
+    let mut document = crate::scene::document(&job.args.scene, &job.options)?;
     for frame in frames.clone() {
         if interrupt::requested() {
             return Err(Failure::silent(Exit::Interrupted));
         }
         let mut options = job.options.clone();
         options.time += f64::from(frame) / job.args.fps;
-        let loaded = crate::scene::loaded(&job.args.scene, &options, job.console)?;
+        let scene = &job.args.scene;
+        let loaded = crate::scene::evaluated(scene, &mut document, &options, job.console)?;
         if frame == frames.start && count > 1 && !loaded.animated {
             job.console
                 .note("The scene does not use time(): all frames will be the same.");

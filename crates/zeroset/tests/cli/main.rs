@@ -3,6 +3,7 @@
 mod backend;
 mod compare;
 mod exits;
+#[cfg(feature = "shaders")]
 mod export;
 mod frames;
 mod hostile;

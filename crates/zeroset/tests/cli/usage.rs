@@ -50,6 +50,8 @@ fn a_scene_without_a_command_names_the_command() {
         &["without the window", "--features window"],
     );
     folder.bad("gpu", 2, &["without the gpu", "--features gpu"]);
+    let shaders = ["without the shaders", "--features shaders"];
+    folder.bad("export scene.star --wgsl", 2, &shaders);
     folder.bad("rende", 2, &["render"]);
 }
 
