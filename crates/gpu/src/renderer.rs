@@ -291,7 +291,7 @@ impl Renderer for GpuRenderer {
         observer: &dyn Observer,
     ) -> Result<Frame, RenderError> {
         let job = self.prepare(scene)?;
-        let [width, height] = scene.settings.size;
+        let [width, height] = scene.settings().size;
         let mut film = Film::with(width, height, planes);
         let statistics = self.render_into(&job, &mut film, observer)?;
         Ok(Frame { film, statistics })

@@ -121,6 +121,9 @@ pub enum RenderError {
     /// The field cannot be compiled.
     #[error(transparent)]
     Compile(#[from] zeroset_field::program::CompileError),
+    /// A scene changed on its way to the renderer, and is none any more.
+    #[error(transparent)]
+    Scene(#[from] crate::valid::SceneError),
     /// The observer asked to stop.
     #[error("the rendering was cancelled")]
     Cancelled,

@@ -141,9 +141,9 @@ impl CpuRenderer {
 
     /// Bytes that a picture of the scene takes while these planes are rendered, apart from the scene itself.
     pub fn memory(&self, scene: &Scene, planes: &[Plane]) -> u64 {
-        let [width, height] = scene.settings.size;
+        let [width, height] = scene.settings().size;
         let numbers: usize = planes.iter().map(|p| p.channels()).sum();
-        let sums = match scene.settings.antialias {
+        let sums = match scene.settings().antialias {
             Antialias::None => 0,
             Antialias::Supersample { .. } => sums([width, height]),
         };
@@ -159,7 +159,7 @@ impl Renderer for CpuRenderer {
         observer: &dyn Observer,
     ) -> Result<Frame, RenderError> {
         let picture = self.prepare(scene)?;
-        let [width, height] = scene.settings.size;
+        let [width, height] = scene.settings().size;
         let mut film = Film::with(width, height, planes);
         let statistics = self.render_into(&picture, &mut film, observer)?;
         Ok(Frame { film, statistics })
@@ -232,10 +232,10 @@ impl<'a> Picture<'a> {
                 Some(set.first().copied().unwrap_or(0))
             }
         };
-        let mut methods = vec![scene.settings.occlusion];
+        let mut methods = vec![scene.settings().occlusion];
         let mut method_of = Vec::new();
-        for object in &scene.objects {
-            let method = object.occlusion.unwrap_or(scene.settings.occlusion);
+        for object in scene.objects() {
+            let method = object.occlusion.unwrap_or(scene.settings().occlusion);
             let at = methods.iter().position(|m| *m == method);
             method_of.push(at.unwrap_or_else(|| {
                 methods.push(method);
@@ -243,7 +243,7 @@ impl<'a> Picture<'a> {
             }));
         }
         let has_orbits =
-            (scene.materials.iter()).any(|m| matches!(m.pattern, Pattern::Orbit { .. }));
+            (scene.materials().iter()).any(|m| matches!(m.pattern, Pattern::Orbit { .. }));
         let spare = Mutex::new(Vec::new());
         Ok(Picture {
             scene,

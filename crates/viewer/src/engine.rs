@@ -17,6 +17,7 @@ use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::render::{Evaluations, Observer, RenderError, Renderer};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Settings, Shadow};
+use zeroset_scene::valid::SceneError;
 use zeroset_trace::CpuRenderer;
 
 /// Stack of the thread: a field is compiled as deep as it nests, which a flag may allow to be deep.
@@ -117,20 +118,20 @@ impl Request {
     }
 
     /// The scene as a look shows it.
-    fn scene_of(&self, look: &Look, rung: &Rung) -> Scene {
-        let mut scene = Scene::clone(&self.scene);
-        scene.camera = self.camera;
-        scene.settings = Settings {
+    fn scene_of(&self, look: &Look, rung: &Rung) -> Result<Scene, SceneError> {
+        let mut parts = Scene::clone(&self.scene).into_parts();
+        parts.camera = self.camera;
+        parts.settings = Settings {
             size: rung.size,
             antialias: rung.antialias,
             ..look.settings
         };
         if let Some(shadow) = look.shadow {
-            for light in &mut scene.lights {
+            for light in &mut parts.lights {
                 light.shadow = shadow;
             }
         }
-        scene
+        parts.build()
     }
 }
 
@@ -508,7 +509,7 @@ impl Worker<'_> {
                 continue;
             }
             let own = own_rung(look, rung);
-            let scene = request.scene_of(look, &own);
+            let scene = request.scene_of(look, &own)?;
             let began = Instant::now();
             let frame = self.backend.renderer.render(&scene, observer)?;
             let take = Take {

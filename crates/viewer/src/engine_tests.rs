@@ -17,13 +17,13 @@ fn request(text: &str, size: [u32; 2]) -> Request {
     );
     let scene = Arc::new(loaded.unwrap().scene);
     let look = Look {
-        settings: scene.settings,
+        settings: *scene.settings(),
         shadow: None,
         plane: Plane::Colour,
     };
     Request {
         edition: 0,
-        camera: scene.camera,
+        camera: *scene.camera(),
         size,
         looks: vec![look],
         refine: false,
@@ -49,8 +49,9 @@ impl Renderer for Counting {
         observer: &dyn Observer,
     ) -> Result<Frame, RenderError> {
         self.calls.fetch_add(1, Ordering::SeqCst);
-        let [width, height] = scene.settings.size;
-        while scene.settings.antialias != Antialias::None && !self.may_finish.load(Ordering::SeqCst)
+        let [width, height] = scene.settings().size;
+        while scene.settings().antialias != Antialias::None
+            && !self.may_finish.load(Ordering::SeqCst)
         {
             if observer.is_cancelled() {
                 self.cancelled.fetch_add(1, Ordering::SeqCst);
@@ -309,7 +310,7 @@ impl Renderer for Moody {
         planes: &[Plane],
         observer: &dyn Observer,
     ) -> Result<Frame, RenderError> {
-        let name = scene.objects.first().map_or("", |o| o.name.as_str());
+        let name = scene.objects().first().map_or("", |o| o.name.as_str());
         assert!(name != "bad", "planted");
         if name == "slow" {
             while !observer.is_cancelled() {
@@ -317,7 +318,7 @@ impl Renderer for Moody {
             }
             return Err(RenderError::Cancelled);
         }
-        let [width, height] = scene.settings.size;
+        let [width, height] = scene.settings().size;
         let (film, statistics) = (Film::with(width, height, planes), Statistics::default());
         Ok(Frame { film, statistics })
     }
@@ -339,7 +340,7 @@ fn a_saved_file_ends_even_the_first_picture_at_once() {
     std::thread::sleep(Duration::from_millis(50));
     let began = Instant::now();
     engine.ask(named("fast", 1));
-    assert_eq!(last(&engine).request.scene.objects[0].name, "fast");
+    assert_eq!(last(&engine).request.scene.objects()[0].name, "fast");
     assert!(
         began.elapsed() < Duration::from_millis(900),
         "{:?}",
@@ -354,7 +355,7 @@ fn a_first_picture_that_takes_long_makes_room_for_any_other() {
     std::thread::sleep(Duration::from_millis(50));
     // a slider that was moved: the file is the same
     engine.ask(named("fast", 0));
-    assert_eq!(last(&engine).request.scene.objects[0].name, "fast");
+    assert_eq!(last(&engine).request.scene.objects()[0].name, "fast");
 }
 
 #[test]
@@ -373,7 +374,7 @@ fn a_renderer_that_breaks_down_takes_nothing_along() {
             last(&engine);
         }
         engine.ask(named("good", round));
-        assert_eq!(last(&engine).request.scene.objects[0].name, "good");
+        assert_eq!(last(&engine).request.scene.objects()[0].name, "good");
         assert!(engine.is_alive());
     }
 }

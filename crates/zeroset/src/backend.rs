@@ -157,7 +157,7 @@ impl<'a> Engine<'a> {
         }
         let renderer = self.cpu()?;
         let picture = renderer.prepare(scene)?;
-        let [width, height] = scene.settings.size;
+        let [width, height] = scene.settings().size;
         let mut film = Film::with(width, height, planes);
         let part = renderer.render_part(&picture, &mut film, observer);
         Ok(Some(Part {

@@ -116,7 +116,7 @@ pub(crate) fn attempt(
         console.warn(warning);
     }
     tracing::debug!(
-        objects = loaded.scene.objects.len(),
+        objects = loaded.scene.objects().len(),
         files = loaded.files.len(),
         "loaded {} in {:.1} ms",
         args.scene.display(),

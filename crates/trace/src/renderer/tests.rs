@@ -32,15 +32,20 @@ impl Observer for Impatient {
 fn slow() -> Vec<(&'static str, Scene)> {
     let with = |settings: &dyn Fn(&mut Settings)| {
         let mut scene = sphere_box_ground();
-        scene.settings.size = [512, 512];
-        scene.settings.antialias = Antialias::None;
-        scene.settings.occlusion = Occlusion::None;
-        settings(&mut scene.settings);
+        scene
+            .edit(|s| {
+                s.settings.size = [512, 512];
+                s.settings.antialias = Antialias::None;
+                s.settings.occlusion = Occlusion::None;
+            })
+            .expect("a scene");
+        scene.edit(|s| settings(&mut s.settings)).expect("a scene");
         scene
     };
     let reach = Some(1e3);
     let mut lit = with(&|_| {});
-    lit.lights = vec![lit.lights[0]; 4096];
+    lit.edit(|s| s.lights = vec![s.lights[0]; 64])
+        .expect("a scene");
     let samples = Antialias::Supersample {
         samples: 4096,
         filter: Filter::Mitchell,
@@ -85,7 +90,7 @@ fn slow() -> Vec<(&'static str, Scene)> {
         (
             "rounds",
             with(&|s| {
-                s.discontinuity_reduction = 100_000;
+                s.discontinuity_reduction = 16;
                 s.normals = Normals::Samples26;
             }),
         ),
@@ -97,11 +102,15 @@ fn slow() -> Vec<(&'static str, Scene)> {
 fn every_evaluation_is_asked_for_before() {
     let renderer = CpuRenderer::new(Some(2)).unwrap();
     for (name, mut scene) in slow() {
-        scene.settings.size = [24, 16];
-        scene.lights.truncate(3);
-        scene.settings.max_steps = scene.settings.max_steps.min(300);
-        scene.settings.discontinuity_reduction = scene.settings.discontinuity_reduction.min(3);
-        let few = match scene.settings.occlusion {
+        scene
+            .edit(|s| {
+                s.settings.size = [24, 16];
+                s.lights.truncate(3);
+                s.settings.max_steps = s.settings.max_steps.min(300);
+                s.settings.discontinuity_reduction = s.settings.discontinuity_reduction.min(3);
+            })
+            .expect("a scene");
+        let few = match scene.settings().occlusion {
             Occlusion::Hemisphere { reach, .. } => Occlusion::Hemisphere { rays: 3, reach },
             Occlusion::Obscurance { reach, tau, .. } => Occlusion::Obscurance {
                 rays: 3,
@@ -116,12 +125,18 @@ fn every_evaluation_is_asked_for_before() {
                 scale: 1.0,
             },
         };
-        scene.settings.occlusion = few;
-        if let Antialias::Supersample { samples, .. } = &mut scene.settings.antialias {
-            *samples = 3;
-        }
+        scene
+            .edit(|s| {
+                s.settings.occlusion = few;
+                if let Antialias::Supersample { samples, .. } = &mut s.settings.antialias {
+                    *samples = 3;
+                }
+            })
+            .expect("a scene");
         for normals in [Normals::Exact, Normals::Samples26, Normals::Tetrahedron] {
-            scene.settings.normals = normals;
+            scene
+                .edit(|s| s.settings.normals = normals)
+                .expect("a scene");
             let picture = renderer.prepare(&scene).unwrap();
             let mut film = Film::new(24, 16);
             let part = renderer.render_part(&picture, &mut film, &Silent);
@@ -159,7 +174,9 @@ fn work_ends_soon_after_it_is_not_wanted() {
 fn tiles_of_a_part_are_those_of_the_whole() {
     let renderer = CpuRenderer::new(Some(1)).unwrap();
     let mut scene = sphere_box_ground();
-    scene.settings.size = [200, 100];
+    scene
+        .edit(|s| s.settings.size = [200, 100])
+        .expect("a scene");
     for antialias in [
         Antialias::None,
         Antialias::Supersample {
@@ -167,7 +184,9 @@ fn tiles_of_a_part_are_those_of_the_whole() {
             filter: Filter::Box,
         },
     ] {
-        scene.settings.antialias = antialias;
+        scene
+            .edit(|s| s.settings.antialias = antialias)
+            .expect("a scene");
         let picture = renderer.prepare(&scene).unwrap();
         let (mut whole, mut film) = (Film::new(200, 100), Film::new(200, 100));
         assert!(renderer.render_part(&picture, &mut whole, &Silent).is_whole);

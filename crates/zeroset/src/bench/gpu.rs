@@ -66,7 +66,7 @@ pub(crate) fn frame(
     let cpu = CpuRenderer::new(Some(threads))?;
     let picture = cpu.prepare(scene)?;
     let job = gpu.prepare(scene)?;
-    let [width, height] = scene.settings.size;
+    let [width, height] = scene.settings().size;
     let film = || Film::with(width, height, &[Plane::Colour]);
     let (mut by_cpu, mut by_gpu) = (film(), film());
     let (mut best, mut compile, mut longest) = (None::<Timings>, 0.0, 0.0);
