@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use zeroset_scene::load::Language;
+use zeroset_language::load::Language;
 
 fuzz_target!(|text: &str| {
     zeroset_fuzz::load(text, Language::Starlark);

@@ -5,10 +5,10 @@ pub mod nest;
 
 use std::sync::LazyLock;
 use std::time::{Duration, Instant};
+use zeroset_language::json::{expand, to_text};
+use zeroset_language::limits::Limits;
+use zeroset_language::load::{Language, Options, load_text};
 use zeroset_scene::film::Plane;
-use zeroset_scene::json::{expand, to_text};
-use zeroset_scene::limits::Limits;
-use zeroset_scene::load::{Language, Options, load_text};
 use zeroset_scene::render::{Observer, RenderError, Renderer};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Occlusion};
@@ -89,17 +89,20 @@ pub fn render(mut scene: Scene) {
         }
         _ => {}
     };
-    scene.settings.size = [SIDE; 2];
-    scene.settings.max_steps = scene.settings.max_steps.min(64);
-    if let Antialias::Supersample { samples, .. } = &mut scene.settings.antialias {
-        *samples = (*samples).min(2);
-    }
-    few(&mut scene.settings.occlusion);
-    for object in &mut scene.objects {
-        object.occlusion.as_mut().map(few);
-    }
-    scene.lights.truncate(2);
-    let nodes = scene.objects.iter().map(|o| o.field.facts().nodes);
+    let changed = scene.edit(|s| {
+        s.settings.size = [SIDE; 2];
+        s.settings.max_steps = s.settings.max_steps.min(64);
+        if let Antialias::Supersample { samples, .. } = &mut s.settings.antialias {
+            *samples = (*samples).min(2);
+        }
+        few(&mut s.settings.occlusion);
+        for object in &mut s.objects {
+            object.occlusion.as_mut().map(few);
+        }
+        s.lights.truncate(2);
+    });
+    changed.expect("fewer of what was allowed");
+    let nodes = scene.objects().iter().map(|o| o.field.facts().nodes);
     if nodes.sum::<u64>() > 500 {
         return;
     }

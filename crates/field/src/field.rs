@@ -115,6 +115,8 @@ pub struct Facts {
     pub depth: u32,
     /// Nodes of the tree, with shared ones counted every time.
     pub nodes: u64,
+    /// One more than the highest [`Paint::Material`] in the tree; 0 where nothing is painted.
+    pub materials: u32,
 }
 
 /// Why a node cannot be made. Every message says what was given and what is allowed.
@@ -196,6 +198,7 @@ impl Field {
             dimension: entry.info.dimension,
             depth: 1,
             nodes: 1,
+            materials: 0,
         };
         Ok(Field::new(Node::Primitive { entry, params }, facts))
     }
@@ -337,6 +340,7 @@ impl Field {
                 },
                 depth: facts.depth.max(f.above()?.depth),
                 nodes: facts.nodes.saturating_add(f.nodes),
+                materials: facts.materials.max(f.materials),
             };
         }
         Ok(Field::new(
@@ -474,6 +478,7 @@ impl Field {
             dimension: Dimension::Three,
             depth: 1,
             nodes: 1,
+            materials: 0,
         };
         Field::new(Node::Formula(formula), facts)
     }
@@ -483,7 +488,10 @@ impl Field {
     /// # Errors
     /// A tree too deep.
     pub fn paint(&self, paint: Paint) -> Result<Field, FieldError> {
-        let facts = self.facts().above()?;
+        let mut facts = self.facts().above()?;
+        if let Paint::Material(number) = paint {
+            facts.materials = facts.materials.max(u32::from(number) + 1);
+        }
         Ok(Field::new(
             Node::Paint {
                 paint,

@@ -51,10 +51,8 @@ fn a_scene_of_nothing_is_a_sky() {
     let Some(renderer) = testing::renderer("a_scene_of_nothing_is_a_sky") else {
         return;
     };
-    let scene = Scene {
-        objects: Vec::new(),
-        ..scene("show(sphere(1.0))")
-    };
+    let mut scene = scene("show(sphere(1.0))");
+    scene.edit(|s| s.objects.clear()).expect("a scene");
     let frame = renderer.render(&scene, &Silent).expect("a picture");
     assert_eq!(frame.statistics.hits, 0);
     assert!(frame.film.plane(Plane::Coverage).iter().all(|c| *c == 0.0));
@@ -111,7 +109,7 @@ fn who_cancels_does_not_wait_for_the_compiler() {
         let after = Duration::from_millis(after);
         let patience = Patience(Instant::now(), after);
         let planes = [zeroset_scene::film::Plane::Colour];
-        let mut sums = Accumulator::new([96, 64], scene.settings.antialias, &planes);
+        let mut sums = Accumulator::new([96, 64], scene.settings().antialias, &planes);
         let samples = 0..sums.wanted();
         match renderer.sample(&job, samples, &mut sums, &patience) {
             Err(GpuError::Scene(RenderError::Cancelled)) => {}

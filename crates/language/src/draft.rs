@@ -13,7 +13,7 @@ use zeroset_scene::camera::{Camera, Lens};
 use zeroset_scene::film::Plane;
 use zeroset_scene::light::{self, Light, Sky};
 use zeroset_scene::material::Material;
-use zeroset_scene::scene::{Object, Scene};
+use zeroset_scene::scene::{Object, Scene, SceneParts};
 use zeroset_scene::settings::{Settings, Shading, Shadow};
 
 /// A camera as far as the file states it.
@@ -194,7 +194,7 @@ impl Draft {
         let bounds = objects.iter().map(|o| o.field.facts().bounds);
         let camera = framing::camera(&self.view.unwrap_or_default(), bounds, settings.size)?;
         let sky = self.sky.unwrap_or_default();
-        let scene = Scene {
+        let parts = SceneParts {
             name: self.name.unwrap_or_else(|| name.to_string()),
             objects,
             materials: self.materials,
@@ -204,13 +204,10 @@ impl Draft {
             settings,
         };
         // numbers of double precision may have become infinite in single precision
-        valid::scene(&scene, limits).map_err(|p| p.message())?;
-        Ok(scene)
+        valid::limits(&parts, limits).map_err(|p| p.message())?;
+        parts.build().map_err(|e| e.to_string())
     }
 }
-
-/// The most lights a scene may have.
-pub(crate) const LIGHTS: usize = 64;
 
 /// A direction of length 1, even where the squares of its numbers underflow or overflow.
 pub(crate) fn unit(direction: [f64; 3]) -> DVec3 {

@@ -27,7 +27,7 @@ fn value(field: &Field, p: [f64; 3]) -> f64 {
 #[track_caller]
 fn at(formula: &str, p: [f64; 3]) -> f64 {
     let loaded = load(&format!("show(field({formula}, slope = 100))")).unwrap();
-    value(&loaded.scene.objects[0].field, p)
+    value(&loaded.scene.objects()[0].field, p)
 }
 
 #[test]
@@ -74,7 +74,7 @@ fn values() {
 fn slopes() {
     let loaded =
         load("show(field(lambda p: length(p) - 1 + 0.1 * sin(360 * p.x), size = 3))").unwrap();
-    let Node::Formula(formula) = loaded.scene.objects[0].field.node() else {
+    let Node::Formula(formula) = loaded.scene.objects()[0].field.node() else {
         panic!("a formula")
     };
     assert!(
@@ -92,7 +92,7 @@ fn slopes() {
         &Options::default(),
     )
     .unwrap();
-    let Node::Formula(other) = again.scene.objects[0].field.node() else {
+    let Node::Formula(other) = again.scene.objects()[0].field.node() else {
         panic!("a formula")
     };
     assert_eq!(formula, other);
@@ -341,7 +341,7 @@ fn whole_powers() {
     let heart = "show(field(lambda p: pow(p.x * p.x + 9 / 4 * p.z * p.z + p.y * p.y - 1, 3) - p.x * p.x * pow(p.y, 3)
         - 9 / 80 * p.z * p.z * pow(p.y, 3), size = 3))";
     let loaded = load(heart).unwrap();
-    let field = &loaded.scene.objects[0].field;
+    let field = &loaded.scene.objects()[0].field;
     for [x, y, z] in [
         [0.0_f64, -0.5, 0.0],
         [0.5, 0.5, 0.2],
@@ -365,7 +365,7 @@ fn whole_powers() {
         &Options::default(),
     )
     .unwrap();
-    let got = value(&loaded.scene.objects[0].field, [-1.5, 0.25, 0.0]);
+    let got = value(&loaded.scene.objects()[0].field, [-1.5, 0.25, 0.0]);
     assert!((got - (-3.375 + 0.25)).abs() < 1e-9, "{got}");
     let broken = json.replace(", 3, [", ", 2.5, [");
     let failed = load_text(
@@ -401,7 +401,7 @@ def f(p):
     return d
 show(field(f))";
     let loaded = load(text).unwrap();
-    let field = &loaded.scene.objects[0].field;
+    let field = &loaded.scene.objects()[0].field;
     let Node::Formula(formula) = field.node() else {
         panic!("a formula")
     };

@@ -508,7 +508,7 @@ fn files_of_the_folder() {
         "load(\"parts/ball.star\", \"ball\")\nload(\"./parts/ball.star\", b = \"ball\")\nshow(ball | b)",
     );
     let loaded = load(&folder.main(), &Options::default()).unwrap();
-    assert_eq!(loaded.scene.name, "main");
+    assert_eq!(loaded.scene.name(), "main");
     let names: Vec<String> = loaded
         .files
         .iter()

@@ -218,7 +218,7 @@ fn a_byte_order_mark_is_skipped() {
     let json = "{\"zeroset\": 1, \"objects\": [{\"field\": {\"sphere\": {}}}]}";
     std::fs::write(&path, format!("\u{feff}{json}")).unwrap();
     let loaded = load(&path, &Options::default()).unwrap();
-    let place = loaded.scene.objects[0].place.clone().unwrap();
+    let place = loaded.scene.objects()[0].place.clone().unwrap();
     let column = json.find("{\"field").unwrap() as u32 + 1;
     assert_eq!((place.1, place.2), (1, column));
     // a second one is no mark: it stands where a value should
@@ -337,7 +337,10 @@ fn titles() {
             ),
         )
         .unwrap();
-        assert_eq!(load(&path, &Options::default()).unwrap().scene.name, right);
+        assert_eq!(
+            load(&path, &Options::default()).unwrap().scene.name(),
+            right
+        );
         assert_eq!(zeroset_language::naming::default_stem(&path), "a b");
     }
     let long = "é".repeat(201);

@@ -42,7 +42,7 @@ fn check(table: &str) {
 }
 
 fn first(loaded: &Loaded) -> &Field {
-    &loaded.scene.objects[0].field
+    &loaded.scene.objects()[0].field
 }
 
 #[test]
@@ -241,12 +241,12 @@ fn a_scene_of_one_line() {
     let loaded = scene("show(sphere())");
     let scene = &loaded.scene;
     assert_eq!(
-        (scene.name.as_str(), scene.objects.len(), scene.lights.len()),
+        (scene.name(), scene.objects().len(), scene.lights().len()),
         ("scene", 1, 1)
     );
-    assert_eq!(scene.objects[0].place, Some(("scene.star".into(), 1, 1)));
+    assert_eq!(scene.objects()[0].place, Some(("scene.star".into(), 1, 1)));
     // the ball stands in the middle of the picture and fills a good part of it
-    let (origin, direction) = scene.camera.ray(256.0, 256.0, scene.settings.size);
+    let (origin, direction) = scene.camera().ray(256.0, 256.0, scene.settings().size);
     let nearest = origin - direction * origin.dot(direction);
     assert!(
         nearest.length() < 1e-4,
@@ -284,7 +284,7 @@ render(size = (512, 512), march = auto(), aa = supersample(8))
 "##;
     let loaded = scene(text);
     assert_eq!(
-        (loaded.scene.objects.len(), loaded.scene.materials.len()),
+        (loaded.scene.objects().len(), loaded.scene.materials().len()),
         (3, 3)
     );
     assert!(loaded.animated);
@@ -320,7 +320,7 @@ show(sphere())";
     };
     let loaded = set(&[]).unwrap();
     assert_eq!(loaded.log, ["0.5 red False (0.0, 0.0, 1.0) 1.5"]);
-    assert_eq!(loaded.scene.settings.size, [64, 32]);
+    assert_eq!(loaded.scene.settings().size, [64, 32]);
     let loaded = set(&[("x", "0.75"), ("c", "green"), ("t", "on"), ("k", "#f00")]).unwrap();
     assert_eq!(loaded.log, ["0.75 green True (1.0, 0.0, 0.0) 1.5"]);
     assert_eq!(loaded.parameters[0].default, Setting::Number(0.5));
@@ -416,5 +416,5 @@ fn painted_parts() {
         "show(sphere().paint('red') | box(1).paint(material(color = 'blue')) | sphere(2).paint('red'))",
     );
     // red, blue and the object's own
-    assert_eq!(loaded.scene.materials.len(), 3);
+    assert_eq!(loaded.scene.materials().len(), 3);
 }

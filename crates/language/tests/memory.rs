@@ -56,7 +56,7 @@ fn good(result: Result<Loaded, zeroset_language::load::Failed>) -> Loaded {
 }
 
 fn images(loaded: &Loaded) -> Vec<&Arc<Image>> {
-    (loaded.scene.materials.iter())
+    (loaded.scene.materials().iter())
         .filter_map(|m| match &m.pattern {
             Pattern::Triplanar { image, .. } => Some(image),
             _ => None,
@@ -322,8 +322,15 @@ fn ten_thousand_objects() {
     ] {
         let (loaded, reading) =
             timed(|| good(load_text("many", &text, language, None, &patient())));
-        assert_eq!(loaded.scene.objects.len() as u64, n);
-        let last = loaded.scene.objects.last().unwrap().place.clone().unwrap();
+        assert_eq!(loaded.scene.objects().len() as u64, n);
+        let last = loaded
+            .scene
+            .objects()
+            .last()
+            .unwrap()
+            .place
+            .clone()
+            .unwrap();
         let lines = text.matches('\n').count() as u32;
         if lines == 0 {
             let column = text.rfind("{\"name\"").unwrap() as u32 + 1;

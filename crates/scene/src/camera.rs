@@ -35,6 +35,21 @@ pub struct Camera {
     pub far: f32,
 }
 
+/// At (0, 0, 5), looking at the origin, with a field of view of 40 degrees.
+impl Default for Camera {
+    fn default() -> Self {
+        Camera {
+            eye: Vec3::new(0.0, 0.0, 5.0),
+            axes: Mat3::IDENTITY,
+            lens: Lens::Pinhole {
+                fov: 40f32.to_radians(),
+            },
+            near: 0.0,
+            far: 1000.0,
+        }
+    }
+}
+
 impl Camera {
     /// A camera at `eye` that looks at `target`, with `up` as much upwards as that allows. `None` where the three do not
     /// define a view.
@@ -83,4 +98,15 @@ impl Camera {
             Lens::Orthographic { .. } => (0.0, width),
         }
     }
+}
+
+/// The shortest degrees that become exactly these radians of single precision.
+pub fn degrees_of(radians: f32) -> f64 {
+    let near = f64::from(radians).to_degrees();
+    let rounded = (0..15).map(|digits| {
+        let text = format!("{near:.digits$}");
+        text.parse::<f64>().unwrap_or(near)
+    });
+    let mut exact = rounded.filter(|d| d.to_radians() as f32 == radians);
+    exact.next().unwrap_or(near)
 }

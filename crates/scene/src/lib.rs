@@ -11,3 +11,4 @@ pub mod material;
 pub mod render;
 pub mod scene;
 pub mod settings;
+pub mod valid;

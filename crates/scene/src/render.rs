@@ -38,7 +38,7 @@ pub trait Renderer: Send + Sync {
         observer: &dyn Observer,
     ) -> Result<Frame, RenderError> {
         let scene = Arc::new(scene.clone());
-        let (camera, settings) = (scene.camera, scene.settings);
+        let (camera, settings) = (*scene.camera(), *scene.settings());
         let mut sums = Accumulator::new(settings.size, settings.antialias, planes);
         let samples = 0..sums.wanted();
         let mut prepared = self.prepare(scene)?;
@@ -165,6 +165,9 @@ pub enum RenderError {
     /// The field cannot be compiled.
     #[error(transparent)]
     Compile(#[from] zeroset_field::program::CompileError),
+    /// A scene changed on its way to the renderer, and is none any more.
+    #[error(transparent)]
+    Scene(#[from] crate::valid::SceneError),
     /// The observer asked to stop.
     #[error("the rendering was cancelled")]
     Cancelled,

@@ -4,6 +4,7 @@ use crate::camera::Camera;
 use crate::light::{Light, Sky};
 use crate::material::Material;
 use crate::settings::{Occlusion, Settings};
+use crate::valid::{self, SceneError};
 use zeroset_catalogue::bounds::Aabb;
 use zeroset_catalogue::entries::Catalogue;
 use zeroset_field::field::{Field, FieldError, Paint};
@@ -15,7 +16,7 @@ pub struct Object {
     pub name: String,
     /// Its shape. Parts of it may be painted with other materials.
     pub field: Field,
-    /// Its material: an index into [`Scene::materials`].
+    /// Its material: an index into [`SceneParts::materials`].
     pub material: u16,
     /// Its own occlusion method, if it chose one.
     pub occlusion: Option<Occlusion>,
@@ -23,16 +24,16 @@ pub struct Object {
     pub place: Option<(String, u32, u32)>,
 }
 
-/// What a renderer gets: valid by construction.
-#[derive(Clone, Debug)]
-pub struct Scene {
+/// What a scene is made of, unchecked.
+#[derive(Clone, Debug, Default)]
+pub struct SceneParts {
     /// Name, usually the file's stem.
     pub name: String,
     /// What is seen. At most 65,535.
     pub objects: Vec<Object>,
     /// What it looks like. At most 65,535.
     pub materials: Vec<Material>,
-    /// What lights it.
+    /// What lights it. At most 64.
     pub lights: Vec<Light>,
     /// What is behind it.
     pub sky: Sky,
@@ -42,10 +43,121 @@ pub struct Scene {
     pub settings: Settings,
 }
 
+/// What a renderer gets: valid by construction. Its numbers are finite and in their ranges, its references lead somewhere
+/// (see [`valid`](crate::valid)).
+#[derive(Clone, Debug)]
+pub struct Scene(SceneParts);
+
+impl SceneParts {
+    /// The scene of these parts: [`Scene::new`].
+    ///
+    /// # Errors
+    /// What is wrong with them, and where.
+    pub fn build(self) -> Result<Scene, SceneError> {
+        Scene::new(self)
+    }
+}
+
 impl Scene {
+    /// The scene of these parts.
+    ///
+    /// # Errors
+    /// What is wrong with them, and where: numbers that are not finite or out of their ranges, a picture without pixels,
+    /// materials that are not there, too many of something.
+    pub fn new(parts: SceneParts) -> Result<Scene, SceneError> {
+        valid::parts(&parts)?;
+        Ok(Scene(parts))
+    }
+
+    /// What it is made of, to be changed and built again.
+    pub fn into_parts(self) -> SceneParts {
+        self.0
+    }
+
+    /// What it is made of.
+    pub fn parts(&self) -> &SceneParts {
+        &self.0
+    }
+
+    /// Name, usually the file's stem.
+    pub fn name(&self) -> &str {
+        &self.0.name
+    }
+
+    /// What is seen.
+    pub fn objects(&self) -> &[Object] {
+        &self.0.objects
+    }
+
+    /// What it looks like. [`Object::material`] is an index into these.
+    pub fn materials(&self) -> &[Material] {
+        &self.0.materials
+    }
+
+    /// What lights it.
+    pub fn lights(&self) -> &[Light] {
+        &self.0.lights
+    }
+
+    /// What is behind it.
+    pub fn sky(&self) -> &Sky {
+        &self.0.sky
+    }
+
+    /// Who looks.
+    pub fn camera(&self) -> &Camera {
+        &self.0.camera
+    }
+
+    /// How it is rendered.
+    pub fn settings(&self) -> &Settings {
+        &self.0.settings
+    }
+
+    /// Changes this scene. Where the change is refused the scene stays as it was.
+    ///
+    /// # Errors
+    /// What would be wrong with it, and where.
+    pub fn edit(&mut self, change: impl FnOnce(&mut SceneParts)) -> Result<(), SceneError> {
+        let mut parts = self.0.clone();
+        change(&mut parts);
+        *self = Scene::new(parts)?;
+        Ok(())
+    }
+
+    /// This scene with other settings.
+    ///
+    /// # Errors
+    /// Which of them is out of its range.
+    pub fn with_settings(mut self, settings: Settings) -> Result<Scene, SceneError> {
+        valid::settings(&settings, valid::SAMPLES).map_err(|e| e.at("settings"))?;
+        self.0.settings = settings;
+        Ok(self)
+    }
+
+    /// This scene as a picture of this width and height in pixels.
+    ///
+    /// # Errors
+    /// A picture without pixels, or with more than [`valid::PIXELS`].
+    pub fn with_size(mut self, size: [u32; 2]) -> Result<Scene, SceneError> {
+        valid::size(size).map_err(|e| e.at("size").at("settings"))?;
+        self.0.settings.size = size;
+        Ok(self)
+    }
+
+    /// This scene seen by another camera.
+    ///
+    /// # Errors
+    /// Which of its numbers is wrong.
+    pub fn with_camera(mut self, camera: Camera) -> Result<Scene, SceneError> {
+        valid::camera(&camera).map_err(|e| e.at("camera"))?;
+        self.0.camera = camera;
+        Ok(self)
+    }
+
     /// The box of all that has an end; what goes on for ever is left out. `None` where nothing is left.
     pub fn finite_bounds(&self) -> Option<Aabb> {
-        finite_bounds(self.objects.iter().map(|o| o.field.facts().bounds))
+        finite_bounds(self.objects().iter().map(|o| o.field.facts().bounds))
     }
 
     /// Whether both scenes have the same field, as far as that is seen without a look into it: the same shapes, painted with the
@@ -63,7 +175,7 @@ impl Scene {
     /// # Errors
     /// A tree too deep.
     pub fn field(&self) -> Result<Option<Field>, FieldError> {
-        let painted = self.objects.iter().zip(0..).map(|(object, number)| {
+        let painted = self.objects().iter().zip(0..).map(|(object, number)| {
             object
                 .field
                 .paint(Paint::Material(object.material))?

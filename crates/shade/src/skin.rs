@@ -28,7 +28,7 @@ pub fn has_skins(scene: &Scene, program: &Program) -> bool {
     if !program.is_close() || program.is_fractal() || !reads_distances(scene) {
         return false;
     }
-    let boxes: Vec<Aabb> = (scene.objects.iter())
+    let boxes: Vec<Aabb> = (scene.objects().iter())
         .map(|object| object.field.facts().bounds)
         .filter(Aabb::is_finite)
         .collect();
@@ -47,9 +47,9 @@ pub fn has_skins(scene: &Scene, program: &Program) -> bool {
 fn reads_distances(scene: &Scene) -> bool {
     let cones = |o: &Occlusion| matches!(o, Occlusion::Cones { .. });
     let soft = |s: &Shadow| matches!(s, Shadow::Soft { .. } | Shadow::SoftClosest { .. });
-    cones(&scene.settings.occlusion)
-        || (scene.objects.iter()).any(|o| o.occlusion.as_ref().is_some_and(cones))
-        || scene.lights.iter().any(|light| soft(&light.shadow))
+    cones(&scene.settings().occlusion)
+        || (scene.objects().iter()).any(|o| o.occlusion.as_ref().is_some_and(cones))
+        || scene.lights().iter().any(|light| soft(&light.shadow))
 }
 
 /// Whether the way down the field from place `number` in the box ends where the field rises on both sides.

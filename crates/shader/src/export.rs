@@ -45,10 +45,10 @@ pub fn wgsl(scene: &Scene) -> Result<String, ExportError> {
     let mut text = format!(
         "// {}: a signed distance field, rendered by sphere tracing. Written by Zeroset.\n\
          // Draw three vertices without buffers with `corners` and `pixel`.\n\n",
-        one_line(&scene.name)
+        one_line(scene.name())
     );
     text += &body(scene)?;
-    let [width, height] = scene.settings.size;
+    let [width, height] = scene.settings().size;
     let _ = write!(
         text,
         "
@@ -112,7 +112,7 @@ fn pixel(@location(0) corner: vec2f, @location(1) size: vec2f, @location(2) angl
     .map_err(|e| wrong(&e))?
     .write()
     .map_err(|e| wrong(&e))?;
-    shadertoy(&scene.name, &written).ok_or_else(|| wrong(&"the translation has an unknown form"))
+    shadertoy(scene.name(), &written).ok_or_else(|| wrong(&"the translation has an unknown form"))
 }
 
 /// Takes what Shadertoy gives itself out of a fragment shader, and puts its entry point in.
@@ -197,7 +197,7 @@ fn body(scene: &Scene) -> Result<String, ExportError> {
     let _ = writeln!(
         text,
         "const EXPOSURE: f32 = {};",
-        number(scene.settings.exposure.exp2())
+        number(scene.settings().exposure.exp2())
     );
     let _ = writeln!(text, "const PIVOT: f32 = {};", number(pivot(&parts.frame)));
     text += &parts.key.picture().text;

@@ -173,7 +173,7 @@ impl Parts {
             }
         };
         let (table, mut frame) = tables(scene, frame(scene, &region));
-        frame.max_steps = program.patient(scene.settings.max_steps);
+        frame.max_steps = program.patient(scene.settings().max_steps);
         frame.quality = u32::from(program.is_fractal())
             | u32::from(program.is_close()) << 1
             | u32::from(has_skins(scene, &program)) << 2;
@@ -259,8 +259,8 @@ impl Frame {
 }
 
 fn frame(scene: &Scene, region: &Region) -> Frame {
-    let settings = &scene.settings;
-    let sky = &scene.sky;
+    let settings = scene.settings();
+    let sky = scene.sky();
     let frame = Frame {
         region_min: region.min,
         region_max: region.max,
@@ -284,7 +284,7 @@ fn frame(scene: &Scene, region: &Region) -> Frame {
         miss: f32::INFINITY,
         ..Frame::default()
     };
-    seen(frame, &scene.camera, settings.size, settings.antialias)
+    seen(frame, scene.camera(), settings.size, settings.antialias)
 }
 
 /// A frame as a camera sees it.
@@ -321,28 +321,28 @@ fn seen(frame: Frame, camera: &Camera, size: [u32; 2], antialias: Antialias) -> 
 /// The table, and the frame that knows where in it everything is.
 fn tables(scene: &Scene, mut frame: Frame) -> (Vec<[f32; 4]>, Frame) {
     let mut table = Vec::new();
-    frame.lights = scene.lights.len() as u32;
+    frame.lights = scene.lights().len() as u32;
     frame.light_rows = 0;
-    for light in &scene.lights {
+    for light in scene.lights() {
         push(&mut table, light_row(light));
     }
     frame.object_rows = table.len() as u32;
-    frame.objects = scene.objects.len() as u32;
-    for object in &scene.objects {
+    frame.objects = scene.objects().len() as u32;
+    for object in scene.objects() {
         push(
             &mut table,
-            occluder(object.occlusion.unwrap_or(scene.settings.occlusion)),
+            occluder(object.occlusion.unwrap_or(scene.settings().occlusion)),
         );
     }
-    push(&mut table, occluder(scene.settings.occlusion));
+    push(&mut table, occluder(scene.settings().occlusion));
     frame.material_rows = table.len() as u32;
-    frame.materials = scene.materials.len() as u32;
+    frame.materials = scene.materials().len() as u32;
     let fallback = material::Material::default();
-    let mut image = table.len() + (scene.materials.len() + 1) * rows::<Material>();
+    let mut image = table.len() + (scene.materials().len() + 1) * rows::<Material>();
     let mut images = Vec::new();
     // materials that show the same image share its rows
     let mut places = HashMap::new();
-    for material in scene.materials.iter().chain([&fallback]) {
+    for material in scene.materials().iter().chain([&fallback]) {
         let mut place = image;
         if let Pattern::Triplanar { image: picture, .. } = &material.pattern {
             place = *places.entry(Arc::as_ptr(picture)).or_insert_with(|| {

@@ -51,9 +51,9 @@ impl Key {
     /// `rows`: those of the table.
     pub(crate) fn new(scene: &Scene, program: &Program, form: FieldForm, rows: usize) -> Key {
         let structure = program.shared_structure();
-        let methods = (scene.objects.iter())
+        let methods = (scene.objects().iter())
             .filter_map(|o| o.occlusion.as_ref())
-            .chain([&scene.settings.occlusion]);
+            .chain([&scene.settings().occlusion]);
         let mut key = Key {
             interpreted: form == FieldForm::Interpreted,
             steep: program.is_steep(),
@@ -61,16 +61,16 @@ impl Key {
             uniform_params: program.params().len() <= UNIFORM_NUMBERS,
             uniform_table: rows <= UNIFORM_ROWS,
             structure,
-            march: march_kind(&scene.settings.march),
-            normals: scene.settings.normals,
-            shading: scene.settings.shading,
+            march: march_kind(&scene.settings().march),
+            normals: scene.settings().normals,
+            shading: scene.settings().shading,
             occlusion: methods.map(occlusion_kind).collect(),
             shadows: scene
-                .lights
+                .lights()
                 .iter()
                 .map(|l| shadow_kind(&l.shadow))
                 .collect(),
-            patterns: (scene.materials.iter())
+            patterns: (scene.materials().iter())
                 .map(|m| pattern_kind(&m.pattern))
                 .collect(),
         };

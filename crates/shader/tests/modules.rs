@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use zeroset_language::load::{Language, Options, load, load_text};
 use zeroset_scene::material::{Image, Pattern};
-use zeroset_scene::scene::Scene;
+use zeroset_scene::scene::{Scene, SceneParts};
 use zeroset_scene::settings::{Antialias, Filter, March, Normals, Occlusion, Shading, Shadow};
 use zeroset_shader::entry::{Binding, ENTRIES};
 use zeroset_shader::export::ExportError;
@@ -142,18 +142,22 @@ fn every_method_has_a_valid_shader() {
     .enumerate()
     {
         let mut scene = base.clone();
-        scene.settings.march = *march;
-        scene.settings.occlusion = *occlusion;
-        scene.settings.normals = normals[i % normals.len()];
-        scene.settings.shading = shadings[i % shadings.len()];
-        for light in &mut scene.lights {
-            light.shadow = shadows[i % shadows.len()];
-        }
+        scene
+            .edit(|s| {
+                s.settings.march = *march;
+                s.settings.occlusion = *occlusion;
+                s.settings.normals = normals[i % normals.len()];
+                s.settings.shading = shadings[i % shadings.len()];
+                for light in &mut s.lights {
+                    light.shadow = shadows[i % shadows.len()];
+                }
+            })
+            .expect("a scene");
         texts.insert(
             check(
                 &scene,
                 FieldForm::Compiled,
-                &format!("{:?}", scene.settings),
+                &format!("{:?}", scene.settings()),
             ),
             i,
         );
@@ -165,16 +169,20 @@ fn every_method_has_a_valid_shader() {
 #[test]
 fn every_pattern_has_a_valid_shader() {
     let mut scene = scene(PATTERNS);
-    scene.materials[0].pattern = Pattern::Triplanar {
-        image: Arc::new(Image {
-            path: "one.png".into(),
-            width: 1,
-            height: 1,
-            pixels: vec![glam::Vec3::ONE],
-        }),
-        size: 1.0,
-        sharpness: 4.0,
-    };
+    scene
+        .edit(|s| {
+            s.materials[0].pattern = Pattern::Triplanar {
+                image: Arc::new(Image {
+                    path: "one.png".into(),
+                    width: 1,
+                    height: 1,
+                    pixels: vec![glam::Vec3::ONE],
+                }),
+                size: 1.0,
+                sharpness: 4.0,
+            }
+        })
+        .expect("a scene");
     let text = check(&scene, FieldForm::Compiled, "patterns");
     for kind in [
         "checker",
@@ -194,9 +202,9 @@ fn every_pattern_has_a_valid_shader() {
 #[test]
 fn numbers_leave_the_shader_as_it_is() {
     let mut shaders = Shaders::new(FieldForm::Auto);
-    let mut of = |text: &str, edit: fn(&mut Scene)| {
+    let mut of = |text: &str, edit: fn(&mut SceneParts)| {
         let mut scene = scene(text);
-        edit(&mut scene);
+        scene.edit(edit).expect("a scene");
         shaders.prepare(&scene).expect("a job").source
     };
     let first = of("show(sphere(1) | box((1, 2, 3)).move(x = 1))", |_| {});

@@ -85,7 +85,7 @@ pub fn compare(scene: &Scene, film: &Film, reference: &Film, budget: &Budget) ->
     assert_eq!([film.width(), film.height()], size, "films of one size");
     let (width, height) = (size[0] as usize, size[1] as usize);
     let (plane, channels) = (budget.plane, budget.plane.channels());
-    let (slope, constant) = scene.camera.pixel_width(size[1]);
+    let (slope, constant) = scene.camera().pixel_width(size[1]);
     let (mut off, mut sum, mut compared) = (0, 0.0, 0);
     for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
         if beside_edge(reference, x, y) {
@@ -103,7 +103,7 @@ pub fn compare(scene: &Scene, film: &Film, reference: &Film, budget: &Budget) ->
             by /= slope * reference.plane(Plane::Depth)[pixel] + constant;
         }
         if by > 0.0 && plane == Plane::Depth {
-            let (_, d) = scene.camera.ray(x as f32 + 0.5, y as f32 + 0.5, size);
+            let (_, d) = scene.camera().ray(x as f32 + 0.5, y as f32 + 0.5, size);
             by *= d
                 .dot(Vec3::from_slice(
                     &reference.plane(Plane::Normal)[3 * pixel..][..3],

@@ -8,7 +8,7 @@ use zeroset::gpu::{GpuRenderer, testing};
 use zeroset::language::load::{Language, Options, load, load_text};
 use zeroset::scene::film::{Film, Plane};
 use zeroset::scene::render::{Renderer, Silent};
-use zeroset::scene::scene::Scene;
+use zeroset::scene::scene::{Scene, SceneParts};
 use zeroset::scene::settings::{
     Antialias, Filter, March, Normals, Occlusion, Settings, Shading, Shadow,
 };
@@ -38,14 +38,18 @@ fn scene(path: &Path) -> Scene {
     let mut scene = load(path, &options)
         .unwrap_or_else(|e| panic!("{}: {e}", path.display()))
         .scene;
-    scene.settings.antialias = Antialias::None;
+    scene
+        .edit(|s| s.settings.antialias = Antialias::None)
+        .expect("a scene");
     let picture = CpuRenderer::new(None)
         .unwrap()
         .prepare_scene(scene.clone().into())
         .expect("a program");
     if picture.program().is_fractal() {
         // rays end anywhere under the footprint: these steps put them where the value is the footprint
-        scene.settings.discontinuity_reduction = 16;
+        scene
+            .edit(|s| s.settings.discontinuity_reduction = 16)
+            .expect("a scene");
     }
     scene
 }
@@ -76,7 +80,9 @@ const MOST: f64 = 0.03;
 /// finer than a pixel: what is seen of it hangs on the last bits of a hit, in any renderer.
 fn restless(scene: &Scene) -> impl Fn(&Budget) -> f64 {
     let mut nearer = scene.clone();
-    nearer.settings.footprint *= 0.9;
+    nearer
+        .edit(|s| s.settings.footprint *= 0.9)
+        .expect("a scene");
     let renderer = CpuRenderer::new(None).unwrap();
     let (a, b, scene) = (on(&renderer, scene), on(&renderer, &nearer), scene.clone());
     move |budget| compare(&scene, &b, &a, budget).share
@@ -147,10 +153,10 @@ fn an_interpreted_field_is_the_compiled_one() {
 fn methods() -> Vec<(String, Scene)> {
     let base = hello();
     let mut all = Vec::new();
-    let mut with = |edit: &dyn Fn(&mut Scene)| {
+    let mut with = |edit: &dyn Fn(&mut SceneParts)| {
         let mut scene = base.clone();
-        edit(&mut scene);
-        let (s, l) = (&scene.settings, &scene.lights[0].shadow);
+        scene.edit(edit).expect("a scene");
+        let (s, l) = (scene.settings(), scene.lights()[0].shadow);
         let name = format!(
             "{:?} {:?} {:?} {:?} {l:?}",
             s.march, s.normals, s.shading, s.occlusion
@@ -241,7 +247,7 @@ fn the_gpu_has_every_method() {
     let renderer = CpuRenderer::new(None).unwrap();
     let all = methods().into_iter().filter_map(|(name, scene)| {
         // without cones the GPU starts each ray by itself, as the plain renderer does
-        let right = if scene.settings.prepass {
+        let right = if scene.settings().prepass {
             on(&renderer, &scene)
         } else {
             reference(&scene)
@@ -259,7 +265,9 @@ fn the_gpu_filters_as_the_cpu() {
     let renderer = CpuRenderer::new(None).unwrap();
     for filter in [Filter::Box, Filter::Tent, Filter::Mitchell] {
         let mut scene = hello();
-        scene.settings.antialias = Antialias::Supersample { samples: 5, filter };
+        scene
+            .edit(|s| s.settings.antialias = Antialias::Supersample { samples: 5, filter })
+            .expect("a scene");
         // here everything counts: silhouettes are what filters are for
         let (a, b) = (on(&gpu, &scene), on(&renderer, &scene));
         for plane in [Plane::Colour, Plane::Coverage] {
@@ -289,7 +297,9 @@ point_light(position = (2, 3, 1), shadow = soft_closest(6))
     let mut scene = load_text("skins.star", text, Language::Starlark, None, &options)
         .unwrap_or_else(|e| panic!("{}", e.report))
         .scene;
-    scene.settings.antialias = Antialias::None;
+    scene
+        .edit(|s| s.settings.antialias = Antialias::None)
+        .expect("a scene");
     let film = on(&CpuRenderer::new(None).unwrap(), &scene);
     none(
         check("skins", &scene, &film, &reference(&scene))
@@ -320,11 +330,15 @@ camera(eye = (3, 1.2, 0), target = (0, 0.5, 0), fov = 40)
     let mut scene = load_text("wall.star", text, Language::Starlark, None, &options)
         .unwrap_or_else(|e| panic!("{}", e.report))
         .scene;
-    scene.settings.antialias = Antialias::None;
-    scene.settings.shading = Shading::Lambert;
-    scene.lights.clear();
-    (scene.sky.top, scene.sky.ambient) = ([1.0; 3].into(), 1.0);
-    (scene.sky.horizon, scene.sky.bottom) = ([0.0; 3].into(), [0.0; 3].into());
+    scene
+        .edit(|s| {
+            s.settings.antialias = Antialias::None;
+            s.settings.shading = Shading::Lambert;
+            s.lights.clear();
+            (s.sky.top, s.sky.ambient) = ([1.0; 3].into(), 1.0);
+            (s.sky.horizon, s.sky.bottom) = ([0.0; 3].into(), [0.0; 3].into());
+        })
+        .expect("a scene");
     scene
 }
 
@@ -434,7 +448,7 @@ fn planted_faults_are_noticed() {
         let mut job = gpu.job(scene).expect("a job");
         assert!(job.source.contains(from), "no `{from}` in the shader");
         job.source = job.source.replace(from, to).into();
-        let mut sums = Accumulator::new(SIZE, scene.settings.antialias, &Plane::ALL);
+        let mut sums = Accumulator::new(SIZE, scene.settings().antialias, &Plane::ALL);
         let samples = 0..sums.wanted();
         gpu.sample(&job, samples, &mut sums, &Silent)
             .expect("a picture");
@@ -468,10 +482,14 @@ fn steps_are_counted_alike() {
     };
     let mut scene = hello();
     // without cones both start each ray by itself
-    scene.settings = Settings {
-        prepass: false,
-        ..scene.settings
-    };
+    scene
+        .edit(|s| {
+            s.settings = Settings {
+                prepass: false,
+                ..s.settings
+            }
+        })
+        .expect("a scene");
     let (a, b) = (on(&gpu, &scene), reference(&scene));
     let budget = Budget {
         plane: Plane::Steps,

@@ -35,7 +35,9 @@ fn render(path: &Path) -> Film {
     let mut scene = load(path, &options)
         .unwrap_or_else(|e| panic!("{}: {e}", path.display()))
         .scene;
-    scene.settings.antialias = Antialias::None;
+    scene
+        .edit(|s| s.settings.antialias = Antialias::None)
+        .expect("a scene");
     CpuRenderer::new(None)
         .unwrap()
         .render(&scene, &Silent)
@@ -130,8 +132,12 @@ fn a_wrong_light_is_noticed() {
         ..Options::default()
     };
     let mut scene = load(&path, &options).unwrap().scene;
-    scene.settings.antialias = Antialias::None;
-    scene.lights[0].radiance *= 0.9;
+    scene
+        .edit(|s| {
+            s.settings.antialias = Antialias::None;
+            s.lights[0].radiance *= 0.9;
+        })
+        .expect("a scene");
     let film = CpuRenderer::new(None)
         .unwrap()
         .render(&scene, &Silent)

@@ -15,7 +15,7 @@ use zeroset_testkit::scenes;
 
 /// The scene's own view, then parallel ones along the axes that stand on the floor.
 fn views(scene: &Scene) -> Vec<Camera> {
-    let mut views = vec![scene.camera];
+    let mut views = vec![*scene.camera()];
     let (centre, half) = match scene.finite_bounds() {
         Some(b) => (b.centre(), b.half()),
         None => ([0.0; 3], [2.0; 3]),
@@ -43,8 +43,8 @@ fn views(scene: &Scene) -> Vec<Camera> {
 fn phantoms(scene: &Scene, film: &Film, program: &Program) -> usize {
     let mut point = Point::<F64>::new(program.values());
     let mut f = |p: glam::DVec3| point.value(v3(F64(p.x), F64(p.y), F64(p.z))).0;
-    let [width, height] = scene.settings.size;
-    let (slope, constant) = scene.camera.pixel_width(height);
+    let [width, height] = scene.settings().size;
+    let (slope, constant) = scene.camera().pixel_width(height);
     let mut count = 0;
     for (i, &depth) in film.plane(Plane::Depth).iter().enumerate() {
         if !depth.is_finite() {
@@ -52,12 +52,12 @@ fn phantoms(scene: &Scene, film: &Film, program: &Program) -> usize {
         }
         let (x, y) = (i as u32 % width, i as u32 / width);
         let (o, d) = scene
-            .camera
+            .camera()
             .ray(x as f32 + 0.5, y as f32 + 0.5, [width, height]);
         let (o, d, t) = (o.as_dvec3(), d.as_dvec3(), f64::from(depth));
         let pixel = f64::from(slope) * t + f64::from(constant);
         // a ray may start inside: then it ends where the field is positive
-        let side = if f(o + d * f64::from(scene.camera.near)) < 0.0 {
+        let side = if f(o + d * f64::from(scene.camera().near)) < 0.0 {
             -1.0
         } else {
             1.0
@@ -81,12 +81,16 @@ fn behind_every_hit_is_a_solid() {
             ..Options::default()
         };
         let mut scene = load(&path, &options).expect("a scene").scene;
-        scene.settings.antialias = Antialias::None;
-        scene.settings.occlusion = Occlusion::None;
-        scene.lights.clear();
-        scene.objects.iter_mut().for_each(|o| o.occlusion = None);
+        scene
+            .edit(|s| {
+                s.settings.antialias = Antialias::None;
+                s.settings.occlusion = Occlusion::None;
+                s.lights.clear();
+                s.objects.iter_mut().for_each(|o| o.occlusion = None);
+            })
+            .expect("a scene");
         for (number, camera) in views(&scene).into_iter().enumerate() {
-            scene.camera = camera;
+            scene.edit(|s| s.camera = camera).expect("a scene");
             let picture = renderer
                 .prepare_scene(scene.clone().into())
                 .expect("a program");

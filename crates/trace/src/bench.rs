@@ -8,7 +8,7 @@ use zeroset_field::repetition::Repetition;
 use zeroset_scene::camera::{Camera, Lens};
 use zeroset_scene::light::{Light, Sky, Source};
 use zeroset_scene::material::Material;
-use zeroset_scene::scene::{Object, Scene};
+use zeroset_scene::scene::{Object, Scene, SceneParts};
 use zeroset_scene::settings::{Settings, Shadow};
 
 fn shape(name: &str, params: &[f64]) -> Field {
@@ -32,7 +32,7 @@ pub fn sphere_box_ground() -> Scene {
     let lens = Lens::Pinhole {
         fov: 40f32.to_radians(),
     };
-    Scene {
+    let parts = SceneParts {
         name: "sphere-box-ground".into(),
         objects: vec![
             object("sphere", at(shape("sphere", &[1.0]), [-0.7, 1.0, 0.0])),
@@ -56,7 +56,8 @@ pub fn sphere_box_ground() -> Scene {
         )
         .expect("a view"),
         settings: Settings::default(),
-    }
+    };
+    parts.build().expect("a scene")
 }
 
 /// A city of boxes on a grid with varied heights.
@@ -69,7 +70,7 @@ pub fn city() -> Scene {
         seed: 1,
     };
     let towers = tower.repeat(repetition).expect("a grid");
-    Scene {
+    let parts = SceneParts {
         name: "city".into(),
         objects: vec![
             object("towers", towers),
@@ -84,6 +85,7 @@ pub fn city() -> Scene {
             },
         )
         .expect("a view"),
-        ..sphere_box_ground()
-    }
+        ..sphere_box_ground().into_parts()
+    };
+    parts.build().expect("a scene")
 }

@@ -47,7 +47,7 @@ impl<'a> Job<'a> {
         taken: Range<u32>,
         into: &Accumulator,
     ) -> Job<'a> {
-        let settings = &picture.scene.settings;
+        let settings = picture.scene.settings();
         let wanted = Plane::ALL.map(|plane| into.planes().contains(&plane));
         let objects = wanted[Plane::Object as usize] || picture.methods.len() > 1;
         let samples = into.filter().map(|filter| (into.wanted(), filter));
@@ -101,7 +101,7 @@ impl<'a> Job<'a> {
             &self.picture.program,
             self.picture.region,
             &self.view,
-            self.picture.scene.settings.max_steps,
+            self.picture.scene.settings().max_steps,
             self.picture.skins,
             self.samples(),
             stop,
@@ -135,7 +135,7 @@ impl<'a> Job<'a> {
 
     /// Chooses where in their pixels the rays of sample number `index` go through.
     fn aim(&self, area: &Area, index: u32, q: &mut Scratch) {
-        let seed = self.picture.scene.settings.seed;
+        let seed = self.picture.scene.settings().seed;
         if self.samples.is_none() {
             q.jitter.iter_mut().for_each(|j| j.fill(0.5));
             return;
@@ -156,7 +156,7 @@ impl<'a> Job<'a> {
 
     /// Finds what the rays hit and what colour it has.
     fn trace<S: Simd>(&self, s: S, solid: &Solid<'_>, area: &Area, index: u32, q: &mut Scratch) {
-        let settings = &self.picture.scene.settings;
+        let settings = &self.picture.scene.settings();
         if index == self.taken.start {
             let reach = if self.samples.is_some() { 0.5 } else { 0.0 };
             cone::prepass(
@@ -210,7 +210,7 @@ impl<'a> Job<'a> {
             q.hits.sort_by_method(&self.picture.method_of);
         }
         if methods.iter().any(random) {
-            let seed = self.picture.scene.settings.seed;
+            let seed = self.picture.scene.settings().seed;
             for i in 0..q.hits.count {
                 let pixel = (q.hits.word[i] & ORDINAL) as usize;
                 let (x, y) = (
@@ -253,12 +253,12 @@ impl<'a> Job<'a> {
 
     /// Sums up what arrives from the lights.
     fn light<S: Simd>(&self, s: S, solid: &Solid<'_>, q: &mut Scratch) {
-        let (count, shading) = (q.hits.count, self.picture.scene.settings.shading);
+        let (count, shading) = (q.hits.count, self.picture.scene.settings().shading);
         let columns = q.hits.diffuse.iter_mut().chain(&mut q.hits.gloss);
         columns
             .chain([&mut q.hits.shadow, &mut q.hits.shares])
             .for_each(|c| c[..count].fill(0.0));
-        for light in &self.picture.scene.lights {
+        for light in self.picture.scene.lights() {
             if solid.stop.is_set() {
                 break;
             }
@@ -314,7 +314,7 @@ impl<'a> Job<'a> {
         };
         self.picture
             .scene
-            .materials
+            .materials()
             .get(at)
             .unwrap_or(&self.fallback)
     }
@@ -423,8 +423,18 @@ impl<'a> Job<'a> {
                     let what = self.substance(s, hits, i, &place);
                     let (diffuse, gloss) = (load3(s, &hits.diffuse, i), load3(s, &hits.gloss, i));
                     let (bent, open) = (load3(s, &hits.bent, i), load(s, &hits.open, i));
-                    let shading = scene.settings.shading;
-                    let c = colour(shading, &scene.sky, &what, diffuse, gloss, n, bent, d, open);
+                    let shading = scene.settings().shading;
+                    let c = colour(
+                        shading,
+                        scene.sky(),
+                        &what,
+                        diffuse,
+                        gloss,
+                        n,
+                        bent,
+                        d,
+                        open,
+                    );
                     store3(c, &mut hits.colour, i);
                     if self.wants(Plane::Albedo) {
                         store3(what.albedo, &mut hits.albedo, i);
@@ -461,7 +471,7 @@ impl<'a> Job<'a> {
 
     /// Fills the tile with the sky. (Its colours are so smooth that the middle of a pixel does for all its samples.)
     fn background<S: Simd>(&self, s: S, area: &Area, q: &mut Scratch) {
-        let heavens = &self.picture.scene.sky;
+        let heavens = self.picture.scene.sky();
         s.vectorize(
             #[inline(always)]
             || {

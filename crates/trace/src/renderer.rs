@@ -92,8 +92,8 @@ impl CpuRenderer {
 
     /// Bytes that a picture of the scene takes while these planes are rendered, apart from the scene itself.
     pub fn memory(&self, scene: &Scene, planes: &[Plane]) -> u64 {
-        let size = scene.settings.size;
-        let scratch = match scene.settings.antialias {
+        let size = scene.settings().size;
+        let scratch = match scene.settings().antialias {
             Antialias::None => 0,
             Antialias::Supersample { .. } => sums(size),
         };
@@ -178,10 +178,10 @@ impl PreparedScene {
                 Some(set.first().copied().unwrap_or(0))
             }
         };
-        let mut methods = vec![scene.settings.occlusion];
+        let mut methods = vec![scene.settings().occlusion];
         let mut method_of = Vec::new();
-        for object in &scene.objects {
-            let method = object.occlusion.unwrap_or(scene.settings.occlusion);
+        for object in scene.objects() {
+            let method = object.occlusion.unwrap_or(scene.settings().occlusion);
             let at = methods.iter().position(|m| *m == method);
             method_of.push(at.unwrap_or_else(|| {
                 methods.push(method);
@@ -189,7 +189,7 @@ impl PreparedScene {
             }));
         }
         let has_orbits =
-            (scene.materials.iter()).any(|m| matches!(m.pattern, Pattern::Orbit { .. }));
+            (scene.materials().iter()).any(|m| matches!(m.pattern, Pattern::Orbit { .. }));
         PreparedScene {
             renderer,
             skins: has_skins(&scene, &program),
@@ -217,9 +217,9 @@ impl PreparedScene {
         planes: &[Plane],
         observer: &dyn Observer,
     ) -> (Part, Film) {
-        let mut sums = Accumulator::new(size, self.scene.settings.antialias, planes);
+        let mut sums = Accumulator::new(size, self.scene.settings().antialias, planes);
         let samples = 0..sums.wanted();
-        let part = self.sample_part(&self.scene.camera, samples, &mut sums, observer);
+        let part = self.sample_part(&self.scene.camera(), samples, &mut sums, observer);
         (part, sums.into_film())
     }
 

@@ -20,6 +20,7 @@ use zeroset_scene::render::{Evaluations, Observer, Prepared, RenderError, Render
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::Antialias::{self, Supersample};
 use zeroset_scene::settings::{Settings, Shadow};
+use zeroset_scene::valid::SceneError;
 use zeroset_trace::CpuRenderer;
 
 /// Stack of the thread: a field is compiled as deep as it nests, which a flag may allow to be deep.
@@ -102,15 +103,15 @@ impl Request {
     }
 
     /// The scene as a look shows it.
-    fn scene_of(&self, look: &Look) -> Scene {
-        let mut scene = Scene::clone(&self.scene);
-        scene.settings = look.settings;
+    fn scene_of(&self, look: &Look) -> Result<Scene, SceneError> {
+        let mut parts = Scene::clone(&self.scene).into_parts();
+        parts.settings = look.settings;
         if let Some(shadow) = look.shadow {
-            for light in &mut scene.lights {
+            for light in &mut parts.lights {
                 light.shadow = shadow;
             }
         }
-        scene
+        parts.build()
     }
 }
 
@@ -513,7 +514,7 @@ impl Worker<'_> {
             Arc::ptr_eq(&ready.scene, &request.scene) && ready.look.has_rays_of(&look)
         });
         if !is_it {
-            let scene = Arc::new(request.scene_of(&look));
+            let scene = Arc::new(request.scene_of(&look)?);
             let prepared = match self.ready.len() > side {
                 true => {
                     let mut ready = self.ready.remove(side);

@@ -17,13 +17,13 @@ fn request(text: &str, size: [u32; 2]) -> Request {
     );
     let scene = Arc::new(loaded.unwrap().scene);
     let look = Look {
-        settings: scene.settings,
+        settings: *scene.settings(),
         shadow: None,
         plane: Plane::Colour,
     };
     Request {
         edition: 0,
-        camera: scene.camera,
+        camera: *scene.camera(),
         size,
         looks: vec![look],
         refine: false,
@@ -346,7 +346,7 @@ impl Test for Moody {
         _: &mut Accumulator,
         observer: &dyn Observer,
     ) -> Result<Statistics, RenderError> {
-        let name = scene.objects.first().map_or("", |o| o.name.as_str());
+        let name = scene.objects().first().map_or("", |o| o.name.as_str());
         assert!(name != "bad", "planted");
         if name == "slow" {
             while !observer.is_cancelled() {
@@ -374,7 +374,7 @@ fn a_saved_file_ends_even_the_first_picture_at_once() {
     std::thread::sleep(Duration::from_millis(50));
     let began = Instant::now();
     engine.ask(named("fast", 1));
-    assert_eq!(last(&engine).request.scene.objects[0].name, "fast");
+    assert_eq!(last(&engine).request.scene.objects()[0].name, "fast");
     assert!(
         began.elapsed() < Duration::from_millis(900),
         "{:?}",
@@ -389,7 +389,7 @@ fn a_first_picture_that_takes_long_makes_room_for_any_other() {
     std::thread::sleep(Duration::from_millis(50));
     // a slider that was moved: the file is the same
     engine.ask(named("fast", 0));
-    assert_eq!(last(&engine).request.scene.objects[0].name, "fast");
+    assert_eq!(last(&engine).request.scene.objects()[0].name, "fast");
 }
 
 #[test]
@@ -408,7 +408,7 @@ fn a_renderer_that_breaks_down_takes_nothing_along() {
             last(&engine);
         }
         engine.ask(named("good", round));
-        assert_eq!(last(&engine).request.scene.objects[0].name, "good");
+        assert_eq!(last(&engine).request.scene.objects()[0].name, "good");
         assert!(engine.is_alive());
     }
 }

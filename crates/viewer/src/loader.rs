@@ -230,7 +230,7 @@ mod tests {
 
         std::fs::write(&path, "show(box(0.5))\nshow(sphere(1))\n").unwrap();
         let mended = loader.wait(patience()).unwrap();
-        assert_eq!(mended.result.unwrap().scene.objects.len(), 2);
+        assert_eq!(mended.result.unwrap().scene.objects().len(), 2);
         assert!(loader.wait(Duration::from_millis(300)).is_none());
     }
 

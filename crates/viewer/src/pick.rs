@@ -58,7 +58,7 @@ pub fn pick(film: &Film, camera: &Camera, scene: &Scene, at: [f32; 2]) -> Option
     let distance = depth(film, at)?;
     let number = film.plane(Plane::Object).get(i)?.round();
     let object = (number as usize).checked_sub(1)?;
-    let shown = scene.objects.get(object)?;
+    let shown = scene.objects().get(object)?;
     let size = [film.width(), film.height()];
     let (origin, direction) = camera.ray(at[0] * size[0] as f32, at[1] * size[1] as f32, size);
     let (triples, _) = film.plane(Plane::Normal).as_chunks::<3>();
@@ -68,7 +68,7 @@ pub fn pick(film: &Film, camera: &Camera, scene: &Scene, at: [f32; 2]) -> Option
         object,
         name: shown.name.clone(),
         material: scene
-            .materials
+            .materials()
             .get(usize::from(shown.material))
             .map_or_else(String::new, described),
         colour: triple(albedo),
@@ -127,10 +127,10 @@ mod tests {
             .film;
         // where a point of space is on the picture
         let at = |x: f32, y: f32, z: f32| {
-            let scale = 1.0 / (scene.camera.plane_height() * (6.0 - z));
+            let scale = 1.0 / (scene.camera().plane_height() * (6.0 - z));
             [0.5 + x * scale * 48.0 / 64.0, 0.5 - y * scale]
         };
-        let ball = pick(&film, &scene.camera, &scene, at(-1.0, 0.0, 0.5)).unwrap();
+        let ball = pick(&film, scene.camera(), &scene, at(-1.0, 0.0, 0.5)).unwrap();
         assert_eq!((ball.object, ball.name.as_str()), (0, "ball"));
         assert_eq!(ball.whereabouts().as_deref(), Some("pick.star:1:1"));
         assert!(
@@ -139,12 +139,12 @@ mod tests {
             ball.point
         );
         assert!(ball.normal.z > 0.95);
-        let cube = pick(&film, &scene.camera, &scene, at(1.0, 0.0, 0.4)).unwrap();
+        let cube = pick(&film, scene.camera(), &scene, at(1.0, 0.0, 0.4)).unwrap();
         assert_eq!(cube.whereabouts().as_deref(), Some("pick.star:2:1"));
         assert!(cube.material.contains("metallic 1"), "{}", cube.material);
         assert!(cube.colour.z > cube.colour.x);
         for nothing in [at(0.0, 1.5, 0.0), [-0.1, 0.5], [0.5, 1.0], [f32::NAN, 0.5]] {
-            assert_eq!(pick(&film, &scene.camera, &scene, nothing), None);
+            assert_eq!(pick(&film, scene.camera(), &scene, nothing), None);
         }
         assert_eq!(depth(&film, at(0.0, 1.5, 0.0)), None);
     }

@@ -10,6 +10,8 @@ use zeroset_scene::camera::{Camera, Lens};
 const CLOSEST: f64 = 1e-5;
 /// Widest and narrowest that an orthographic view becomes, scene units.
 const HEIGHTS: (f64, f64) = (1e-6, 1e6);
+/// The widest field of view, degrees.
+const WIDEST: f32 = 170.0;
 
 /// A direction to look from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -267,10 +269,10 @@ pub fn widened(camera: &Camera, aspect: f32, shape: [u32; 2]) -> Camera {
     }
     let lens = match camera.lens {
         Lens::Pinhole { fov } => Lens::Pinhole {
-            fov: 2.0 * ((0.5 * fov).tan() * narrower).atan(),
+            fov: (2.0 * ((0.5 * fov).tan() * narrower).atan()).min(WIDEST.to_radians()),
         },
         Lens::Orthographic { height } => Lens::Orthographic {
-            height: height * narrower,
+            height: (height * narrower).min(HEIGHTS.1 as f32),
         },
     };
     Camera { lens, ..*camera }
@@ -447,10 +449,8 @@ mod tests {
                 None,
                 &Options::default(),
             );
-            let camera = loaded
-                .unwrap_or_else(|e| panic!("{text}: {e}"))
-                .scene
-                .camera;
+            let scene = loaded.unwrap_or_else(|e| panic!("{text}: {e}")).scene;
+            let camera = scene.camera();
             let wanted = rig.camera();
             assert_eq!(camera.eye, wanted.eye, "{text}");
             assert!(

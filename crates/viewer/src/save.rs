@@ -34,11 +34,11 @@ pub(crate) fn save(session: &Session, name: &str) -> Result<PathBuf, String> {
         return Err("there is no picture yet".to_owned());
     };
     let scene = &shown.request.scene;
-    let notes = Notes::new(&scene.name).with("Camera", session.rig.statement());
+    let notes = Notes::new(scene.name()).with("Camera", session.rig.statement());
     let wrong = |e: zeroset_output::atomic::WriteError| format!("{e}; {}", e.advice());
     match ending(&path).as_deref() {
         Some("png") => {
-            let names: Vec<String> = scene.objects.iter().map(|o| o.name.clone()).collect();
+            let names: Vec<String> = scene.objects().iter().map(|o| o.name.clone()).collect();
             let view = View {
                 plane: look.plane,
                 exposure: look.settings.exposure,

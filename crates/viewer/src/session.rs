@@ -125,7 +125,7 @@ impl Session {
     /// The scene's name, or the file's as long as there is none, as it is shown.
     pub fn name(&self) -> String {
         match &self.current {
-            Some(current) => name(&current.scene.name, NAME),
+            Some(current) => name(current.scene.name(), NAME),
             None => default_stem(&self.path),
         }
     }
@@ -191,26 +191,26 @@ impl Session {
                     far: 0.0,
                     ..*camera
                 };
-                stands(&before.scene.camera) != stands(&scene.camera)
+                stands(before.scene.camera()) != stands(scene.camera())
                     && (outcome.is_edit || !self.is_free)
             }
         };
         if moved {
-            self.rig = Rig::new(&scene.camera, scene.finite_bounds());
+            self.rig = Rig::new(scene.camera(), scene.finite_bounds());
             self.is_free = false;
         } else {
-            self.rig.see_as_far_as(&scene.camera);
+            self.rig.see_as_far_as(scene.camera());
         }
         if self.current.is_none() {
             self.slice.at = 0.5 * (Slice::room(&scene).min[2] + Slice::room(&scene).max[2]);
             for look in &mut self.looks {
-                look.settings = scene.settings;
+                look.settings = *scene.settings();
             }
         }
         for look in &mut self.looks {
-            look.settings = merged(&self.stated, &look.settings, &scene.settings);
+            look.settings = merged(&self.stated, &look.settings, scene.settings());
         }
-        self.stated = scene.settings;
+        self.stated = *scene.settings();
         if outcome.is_edit {
             self.picked = None;
         }
@@ -283,7 +283,7 @@ impl Session {
     /// Puts the camera back to where the file has it.
     pub fn reset_camera(&mut self) {
         if let Some(current) = &self.current {
-            self.rig = Rig::new(&current.scene.camera, current.scene.finite_bounds());
+            self.rig = Rig::new(current.scene.camera(), current.scene.finite_bounds());
             self.is_free = false;
         }
     }

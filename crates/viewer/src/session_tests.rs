@@ -66,7 +66,7 @@ fn a_camera_that_was_moved_stays_until_the_file_moves_it() {
         true,
     ));
     // a larger ball is seen from farther away
-    let far = session.current.as_ref().unwrap().scene.camera;
+    let far = session.current.as_ref().unwrap().scene.camera();
     assert!(far.far > moved.camera().far);
     moved.see_as_far_as(&far);
     assert_eq!(session.rig, moved);

@@ -232,7 +232,7 @@ mod tests {
         );
         let scene = Arc::new(loaded.unwrap().scene);
         let look = Look {
-            settings: scene.settings,
+            settings: *scene.settings(),
             shadow: None,
             plane: Plane::Colour,
         };
@@ -243,7 +243,7 @@ mod tests {
             .film;
         let request = Request {
             edition: 0,
-            camera: scene.camera,
+            camera: *scene.camera(),
             size: [200, 200],
             looks: vec![look],
             refine: false,

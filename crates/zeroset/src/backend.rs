@@ -174,7 +174,7 @@ impl Engine {
             }));
         }
         let prepared = self.cpu()?.prepare_scene(scene.clone().into())?;
-        let (part, film) = prepared.render_part(scene.settings.size, planes, observer);
+        let (part, film) = prepared.render_part(scene.settings().size, planes, observer);
         Ok(Some(Part {
             film,
             statistics: part.statistics,

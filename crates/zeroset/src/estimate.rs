@@ -49,8 +49,8 @@ impl Observer for Deadline {
 /// # Errors
 /// See [`RenderError`].
 pub(crate) fn cost(scene: &Scene) -> Result<Cost, RenderError> {
-    let size = scene.settings.size;
-    let rays_per_pixel = match scene.settings.antialias {
+    let size = scene.settings().size;
+    let rays_per_pixel = match scene.settings().antialias {
         Antialias::None => 1,
         Antialias::Supersample { samples, .. } => samples.max(1),
     };
@@ -59,7 +59,7 @@ pub(crate) fn cost(scene: &Scene) -> Result<Cost, RenderError> {
     let pixels = u64::from(size[0]) * u64::from(size[1]);
     let bytes = renderer.memory(scene, &[Plane::Colour]) + 12 * pixels;
     let mut plain = scene.clone();
-    plain.settings.antialias = Antialias::None;
+    plain.edit(|parts| parts.settings.antialias = Antialias::None)?;
     let picture = renderer.prepare_scene(plain.into())?;
     let began = Instant::now();
     // rays, evaluations, seconds
@@ -187,7 +187,7 @@ mod tests {
             let estimate = cost(&scene).unwrap();
             let renderer = CpuRenderer::new(Some(2)).unwrap();
             let picture = renderer.prepare_scene(scene.clone().into()).unwrap();
-            let [width, height] = scene.settings.size;
+            let [width, height] = scene.settings().size;
             let (part, _) = picture.render_part(
                 [width, height],
                 &Plane::ALL,

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use zeroset_output::atomic::{WriteError, WriteFailure};
 use zeroset_output::format::read::ReadError;
 use zeroset_scene::render::RenderError;
+use zeroset_scene::valid::SceneError;
 
 /// Exit codes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,6 +86,12 @@ impl From<WriteError> for Failure {
     }
 }
 
+impl From<SceneError> for Failure {
+    fn from(error: SceneError) -> Self {
+        Failure::new(Exit::Scene, error.to_string())
+    }
+}
+
 impl From<ReadError> for Failure {
     fn from(error: ReadError) -> Self {
         Failure::new(Exit::File, error.to_string())
@@ -116,7 +123,7 @@ impl From<RenderError> for Failure {
     fn from(error: RenderError) -> Self {
         match error {
             RenderError::Cancelled => Failure::silent(Exit::Interrupted),
-            RenderError::Field(_) | RenderError::Compile(_) => {
+            RenderError::Scene(_) | RenderError::Field(_) | RenderError::Compile(_) => {
                 Failure::new(Exit::Scene, error.to_string())
             }
             RenderError::Threads { .. } => Failure::with_help(

@@ -136,7 +136,7 @@ pub(crate) fn evaluated(
         console.warn(warning);
     }
     tracing::debug!(
-        objects = loaded.scene.objects.len(),
+        objects = loaded.scene.objects().len(),
         files = loaded.files.len(),
         "loaded {} in {:.1} ms",
         args.scene.display(),

@@ -20,8 +20,8 @@ fn at(p: [f64; 3]) -> Vec3<F64> {
 
 /// The name of the object that the camera stands in, if it stands in one.
 pub(crate) fn around_camera(scene: &Scene) -> Option<&str> {
-    let Camera { eye, near, .. } = scene.camera;
-    let from = (eye - scene.camera.axes.z_axis * near)
+    let Camera { eye, near, .. } = *scene.camera();
+    let from = (eye - scene.camera().axes.z_axis * near)
         .as_dvec3()
         .to_array();
     let inside = |field: &Field| {
@@ -29,7 +29,7 @@ pub(crate) fn around_camera(scene: &Scene) -> Option<&str> {
         Some(Point::<F64>::new(program.values()).value(at(from)).0 < 0.0)
     };
     let holds = |b: &Aabb| b.contains(from);
-    (scene.objects.iter())
+    (scene.objects().iter())
         .find(|o| holds(&o.field.facts().bounds) && inside(&o.field) == Some(true))
         .map(|o| o.name.as_str())
 }
@@ -99,13 +99,13 @@ const SEQUENCE: [f64; 6] = [
 /// first is the larger part of the second.
 pub(crate) fn coarse(scene: &Scene) -> Option<(f64, f64)> {
     let bounds = scene.finite_bounds()?;
-    let largest = (bounds.min.iter().chain(&bounds.max))
-        .fold(scene.camera.eye.abs().max_element().into(), |m: f64, x| {
-            m.max(x.abs())
-        });
+    let largest = (bounds.min.iter().chain(&bounds.max)).fold(
+        scene.camera().eye.abs().max_element().into(),
+        |m: f64, x| m.max(x.abs()),
+    );
     let centre = glam::DVec3::from(bounds.centre());
-    let distance = (scene.camera.eye.as_dvec3() - centre).length();
-    let (slope, constant) = scene.camera.pixel_width(scene.settings.size[1]);
+    let distance = (scene.camera().eye.as_dvec3() - centre).length();
+    let (slope, constant) = scene.camera().pixel_width(scene.settings().size[1]);
     let pixel = f64::from(slope) * distance + f64::from(constant);
     let grain = largest * f64::from(f32::EPSILON);
     (grain > 0.25 * pixel).then_some((grain, pixel))
@@ -143,10 +143,10 @@ mod tests {
     #[test]
     fn a_loose_bound_is_measured() {
         let stated = scene("show(field(lambda p: length(p) - 1, size = 4, slope = 30))");
-        let loose = looseness(&stated.objects[0].field).expect("a surface");
+        let loose = looseness(&stated.objects()[0].field).expect("a surface");
         assert!((loose - 30.0).abs() < 0.1, "{loose}");
         let exact = scene("show(sphere(1))");
-        assert_eq!(looseness(&exact.objects[0].field), None);
+        assert_eq!(looseness(&exact.objects()[0].field), None);
     }
 
     #[test]

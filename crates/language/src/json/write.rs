@@ -1,14 +1,13 @@
 //! From a scene to JSON.
 
-use super::{NAME, VERSION, angle_name, valid};
-use crate::limits::Limits;
+use super::{NAME, VERSION, angle_name};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::collections::HashMap;
 use zeroset_catalogue::{Info, Kind, Unit};
 use zeroset_field::field::{Field, Node, Paint};
 use zeroset_field::placement::Placement;
-use zeroset_scene::camera::{Camera, Lens};
+use zeroset_scene::camera::{Camera, Lens, degrees_of};
 use zeroset_scene::scene::Scene;
 
 /// Levels of a field that are written into each other; what lies deeper becomes a part of its own.
@@ -32,18 +31,11 @@ impl ExpandError {
 /// The scene as JSON: everything that it is, every number exact.
 ///
 /// # Errors
-/// What could not be read back: numbers that are not finite or out of range, materials that are not there.
+/// A number that is not finite, which JSON has no word for.
 pub fn expand(scene: &Scene) -> Result<Value, ExpandError> {
-    valid::scene(scene, &Limits::NONE).map_err(|p| ExpandError::new(p.message()))?;
-    let mut writer = Writer {
-        materials: scene.materials.len(),
-        ..Writer::default()
-    };
-    scene
-        .objects
-        .iter()
-        .for_each(|object| writer.count(&object.field));
-    let objects: Vec<Value> = (scene.objects.iter())
+    let mut writer = Writer::default();
+    (scene.objects().iter()).for_each(|object| writer.count(&object.field));
+    let objects: Vec<Value> = (scene.objects().iter())
         .map(|object| {
             let mut out = Map::new();
             out.insert("name".into(), json!(object.name));
@@ -57,20 +49,17 @@ pub fn expand(scene: &Scene) -> Result<Value, ExpandError> {
         .collect();
     let mut out = Map::new();
     out.insert(NAME.into(), json!(VERSION));
-    out.insert("name".into(), json!(scene.name));
+    out.insert("name".into(), json!(scene.name()));
     if !writer.parts.is_empty() {
         out.insert("parts".into(), Value::Array(writer.parts));
     }
     out.insert("objects".into(), Value::Array(objects));
-    out.insert("materials".into(), plain(&scene.materials));
-    out.insert("lights".into(), plain(&scene.lights));
-    out.insert("sky".into(), plain(&scene.sky));
-    out.insert("camera".into(), camera(&scene.camera));
-    out.insert("settings".into(), plain(&scene.settings));
+    out.insert("materials".into(), plain(scene.materials()));
+    out.insert("lights".into(), plain(scene.lights()));
+    out.insert("sky".into(), plain(scene.sky()));
+    out.insert("camera".into(), camera(scene.camera()));
+    out.insert("settings".into(), plain(scene.settings()));
     let out = Value::Object(out);
-    if let Some(reason) = writer.refused {
-        return Err(ExpandError::new(reason));
-    }
     // nothing in a scene is written as null but a number that is not finite
     match null(&out) {
         Some(path) => Err(ExpandError::new(format!("{path} is not a finite number"))),
@@ -99,7 +88,7 @@ fn null(value: &Value) -> Option<String> {
 }
 
 /// Data without fields. What cannot be written becomes null, which is found.
-fn plain(data: &impl Serialize) -> Value {
+fn plain(data: &(impl Serialize + ?Sized)) -> Value {
     serde_json::to_value(data).unwrap_or_default()
 }
 
@@ -115,17 +104,6 @@ fn camera(camera: &Camera) -> Value {
     out.insert("near".into(), json!(camera.near));
     out.insert("far".into(), json!(camera.far));
     Value::Object(out)
-}
-
-/// The shortest degrees that become exactly these radians of single precision.
-pub(super) fn degrees_of(radians: f32) -> f64 {
-    let near = f64::from(radians).to_degrees();
-    let rounded = (0..15).map(|digits| {
-        let text = format!("{near:.digits$}");
-        text.parse::<f64>().unwrap_or(near)
-    });
-    let mut exact = rounded.filter(|d| d.to_radians() as f32 == radians);
-    exact.next().unwrap_or(near)
 }
 
 /// The degrees that become exactly these radians, if there are any: near the nominal ones, the shortest.
@@ -154,10 +132,6 @@ struct Writer {
     /// Parts written already, by node.
     places: HashMap<usize, usize>,
     parts: Vec<Value>,
-    /// Number of materials.
-    materials: usize,
-    /// The first thing that could not be read back.
-    refused: Option<String>,
 }
 
 impl Writer {
@@ -187,15 +161,6 @@ impl Writer {
     }
 
     fn node(&mut self, field: &Field, level: u32) -> Value {
-        if let Node::Paint {
-            paint: Paint::Material(number),
-            ..
-        } = field.node()
-            && usize::from(*number) >= self.materials
-        {
-            let reason = format!("a part has material {number}, which is not there");
-            self.refused.get_or_insert(reason);
-        }
         let mut of = |shape: &Field| self.field(shape, level + 1);
         let (name, body) = match field.node() {
             Node::Primitive { entry, params } => (entry.info.name, parameters(&entry.info, params)),

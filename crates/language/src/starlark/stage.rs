@@ -3,7 +3,7 @@
 use super::mistake::{Run, mistake};
 use super::native::{Call, Given, Native, Slot, slot};
 use super::value::{Thing, Value};
-use crate::draft::{FOV, LIGHTS, View, unit};
+use crate::draft::{FOV, View, unit};
 use crate::framing::axes_of;
 use glam::{DMat3, DQuat, DVec3, EulerRot, Vec3};
 use zeroset_catalogue::{Dimension, LARGE, SMALL};
@@ -11,6 +11,7 @@ use zeroset_scene::light::{Light, Sky, Source};
 use zeroset_scene::material::Material;
 use zeroset_scene::scene::Object;
 use zeroset_scene::settings::{Occlusion, Shadow};
+use zeroset_scene::valid::LIGHTS;
 
 const GROUP: &str = "Stage";
 

@@ -37,7 +37,9 @@ sun(direction = (-1, -1.6, -0.7), shadow = soft(24))
     let mut scene = load_text("parts.star", &text, Language::Starlark, None, &options)
         .unwrap_or_else(|e| panic!("{}", e.report))
         .scene;
-    scene.settings.antialias = Antialias::None;
+    scene
+        .edit(|s| s.settings.antialias = Antialias::None)
+        .expect("a scene");
     scene
 }
 
@@ -78,11 +80,13 @@ fn a_scene_of_2000_parts_is_the_same_on_the_gpu() {
     assert_eq!(gpu.timings().map(|t| t.retries), Some(0));
     // rays of occlusion ask many more questions than a dispatch can answer
     let mut sampled = scene;
-    sampled.settings.size = [16, 12];
-    sampled.settings.occlusion = Occlusion::Hemisphere {
+    let occlusion = Occlusion::Hemisphere {
         rays: 12,
         reach: Some(1.0),
     };
+    sampled
+        .edit(|s| (s.settings.size, s.settings.occlusion) = ([16, 12], occlusion))
+        .expect("a scene");
     let right = reference(&sampled);
     none(
         check("sampled", &sampled, &on(&gpu, &sampled), &right)
@@ -97,7 +101,7 @@ fn a_scene_of_5000_coloured_objects_is_the_same_on_the_gpu() {
         return;
     };
     let mut scene = parts(5000);
-    scene.settings.size = [32, 24];
+    scene.edit(|s| s.settings.size = [32, 24]).expect("a scene");
     let right = on(&CpuRenderer::new(None).unwrap(), &scene);
     is_varied(&right);
     none(

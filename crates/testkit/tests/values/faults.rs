@@ -8,18 +8,18 @@ use zeroset::scene::film::Film;
 use zeroset::scene::light::Source;
 use zeroset::scene::material::{Image, Pattern};
 use zeroset::scene::render::Silent;
-use zeroset::scene::scene::Scene;
+use zeroset::scene::scene::{Scene, SceneParts};
 use zeroset::scene::settings::{Antialias, Filter, Shadow};
 use zeroset::trace::CpuRenderer;
 
-fn patterns(scene: &mut Scene, edit: impl Fn(&mut Pattern)) {
+fn patterns(scene: &mut SceneParts, edit: impl Fn(&mut Pattern)) {
     scene
         .materials
         .iter_mut()
         .for_each(|m| edit(&mut m.pattern));
 }
 
-fn inside_out(scene: &mut Scene) {
+fn inside_out(scene: &mut SceneParts) {
     patterns(scene, |pattern| match pattern {
         Pattern::Checker { colours, .. }
         | Pattern::Stripes { colours, .. }
@@ -30,7 +30,7 @@ fn inside_out(scene: &mut Scene) {
     });
 }
 
-fn images(scene: &mut Scene, edit: impl Fn(&mut Image)) {
+fn images(scene: &mut SceneParts, edit: impl Fn(&mut Image)) {
     patterns(scene, |pattern| {
         if let Pattern::Triplanar { image, .. } = pattern {
             edit(Arc::make_mut(image));
@@ -56,7 +56,7 @@ fn undecoded(image: &mut Image) {
     }
 }
 
-fn with_octaves(scene: &mut Scene, more: u32) {
+fn with_octaves(scene: &mut SceneParts, more: u32) {
     patterns(scene, |pattern| {
         if let Pattern::Noise { octaves, .. } = pattern {
             *octaves += more;
@@ -64,14 +64,14 @@ fn with_octaves(scene: &mut Scene, more: u32) {
     });
 }
 
-fn with_filter(scene: &mut Scene, other: Filter) {
-    if let Antialias::Supersample { filter, .. } = &mut scene.settings.antialias {
+fn with_filter(scene: &mut SceneParts, other: Filter) {
+    if let Antialias::Supersample { filter, .. } = &mut scene.settings().antialias {
         *filter = other;
     }
 }
 
 /// What is wrong, how, and the check that must notice.
-type SceneFault = (&'static str, fn(&mut Scene), &'static str);
+type SceneFault = (&'static str, fn(&mut SceneParts), &'static str);
 
 /// Faults of renderers that a changed scene stands for.
 const IN_SCENES: [SceneFault; 22] = [
@@ -175,7 +175,7 @@ fn faults_in_scenes_are_noticed() {
     for (what, edit, name) in IN_SCENES {
         let draw = |scene: &Scene| {
             let mut scene = scene.clone();
-            edit(&mut scene);
+            scene.edit(edit).expect("a scene");
             on(&renderer, &scene)
         };
         assert!(
@@ -332,7 +332,7 @@ fn faults_in_shaders_are_noticed() {
             let mut job = gpu.job(scene).expect("a job");
             planted.set(planted.get() || job.source.contains(from));
             job.source = job.source.replace(from, to).into();
-            let settings = scene.settings;
+            let settings = scene.settings();
             let mut sums = Accumulator::new(settings.size, settings.antialias, &Plane::ALL);
             let samples = 0..sums.wanted();
             gpu.sample(&job, samples, &mut sums, &Silent)

@@ -103,7 +103,7 @@ fn a_colour_reaches_the_file() {
             &format!("ao = none(), aa = {aa}, exposure = {exposure}"),
         );
         let film = on(&renderer, &scene);
-        let picture = Picture::develop(&film, scene.settings.exposure);
+        let picture = Picture::develop(&film, scene.settings().exposure);
         for depth in [Depth::Eight, Depth::Sixteen] {
             let mut bytes = Vec::new();
             write(&mut bytes, &picture, depth, &Notes::new("known")).unwrap();

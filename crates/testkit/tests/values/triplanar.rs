@@ -184,7 +184,7 @@ fn read(
     );
     let text = "show(sphere(), triplanar(\"image.png\"))";
     let scene = loaded(text, SIZE, Some(folder.path()));
-    let Pattern::Triplanar { image, .. } = &scene.materials[0].pattern else {
+    let Pattern::Triplanar { image, .. } = &scene.materials()[0].pattern else {
         panic!("the image is a pattern");
     };
     assert_eq!([image.width, image.height], size);

@@ -22,7 +22,7 @@ impl Plain<'_> {
     ) -> (f32, Vec3) {
         let chosen = self
             .scene
-            .objects
+            .objects()
             .get(object.max(0.0) as usize)
             .and_then(|o| o.occlusion);
         let up = Vec3::from(UP);

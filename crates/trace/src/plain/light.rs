@@ -33,7 +33,7 @@ impl Plain<'_> {
     /// Sums up what arrives from the lights.
     pub(super) fn light(&self, probe: &mut impl Probe, at: &Surface, shininess: f32) -> Light {
         let (mut sum, mut shares) = (Light::default(), 0.0);
-        for light in &self.scene.lights {
+        for light in self.scene.lights() {
             let origin = at.p + at.normal * at.offset;
             let (to, distance) = Self::towards(&light.source, origin);
             let lit = match light.shadow {

@@ -80,7 +80,7 @@ impl Quality {
             fractal: program.is_fractal(),
             close: program.is_close(),
             skins: has_skins(scene, program),
-            max_steps: program.patient(scene.settings.max_steps),
+            max_steps: program.patient(scene.settings().max_steps),
         }
     }
 
@@ -98,12 +98,12 @@ impl Quality {
 
 /// Renders a scene on the threads of the pool that it is called in. `probe` makes an evaluator of the field.
 pub fn render<P: Probe>(scene: &Scene, quality: &Quality, probe: impl Fn() -> P + Sync) -> Film {
-    let settings = &scene.settings;
+    let settings = scene.settings();
     let [width, height] = settings.size;
     let plain = Plain {
         scene,
         settings,
-        view: View::new(&scene.camera, settings.size, settings.footprint),
+        view: View::new(scene.camera(), settings.size, settings.footprint),
         region: Region::new(&quality.bounds),
         quality: *quality,
         fallback: Material::default(),
@@ -169,7 +169,7 @@ impl Plain<'_> {
         let found = self.march(probe, o, d);
         let Some(end) = found.hit else {
             return Sample {
-                colour: glam(sky(&self.scene.sky, d.y)),
+                colour: glam(sky(self.scene.sky(), d.y)),
                 hit: None,
                 steps: found.steps,
             };
@@ -210,7 +210,7 @@ impl Plain<'_> {
         let light = self.light(probe, &surface, shininess);
         let c = colour(
             self.settings.shading,
-            &self.scene.sky,
+            self.scene.sky(),
             &what,
             field(light.diffuse),
             field(light.gloss),
@@ -241,7 +241,7 @@ impl Plain<'_> {
         } else {
             usize::MAX
         };
-        self.scene.materials.get(at).unwrap_or(&self.fallback)
+        self.scene.materials().get(at).unwrap_or(&self.fallback)
     }
 
     fn substance(&self, mark: &Mark, at: &Place<f32>) -> (Substance<f32>, f32) {

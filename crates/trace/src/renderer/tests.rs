@@ -32,15 +32,20 @@ impl Observer for Impatient {
 fn slow() -> Vec<(&'static str, Scene)> {
     let with = |settings: &dyn Fn(&mut Settings)| {
         let mut scene = sphere_box_ground();
-        scene.settings.size = [512, 512];
-        scene.settings.antialias = Antialias::None;
-        scene.settings.occlusion = Occlusion::None;
-        settings(&mut scene.settings);
+        scene
+            .edit(|s| {
+                s.settings.size = [512, 512];
+                s.settings.antialias = Antialias::None;
+                s.settings.occlusion = Occlusion::None;
+            })
+            .expect("a scene");
+        scene.edit(|s| settings(&mut s.settings)).expect("a scene");
         scene
     };
     let reach = Some(1e3);
     let mut lit = with(&|_| {});
-    lit.lights = vec![lit.lights[0]; 4096];
+    lit.edit(|s| s.lights = vec![s.lights[0]; 64])
+        .expect("a scene");
     let samples = Antialias::Supersample {
         samples: 4096,
         filter: Filter::Mitchell,
@@ -85,7 +90,7 @@ fn slow() -> Vec<(&'static str, Scene)> {
         (
             "rounds",
             with(&|s| {
-                s.discontinuity_reduction = 100_000;
+                s.discontinuity_reduction = 16;
                 s.normals = Normals::Samples26;
             }),
         ),
@@ -94,7 +99,7 @@ fn slow() -> Vec<(&'static str, Scene)> {
 
 /// All of a scene, or as much as there is when the observer ends it.
 fn rendered(picture: &PreparedScene, observer: &dyn Observer) -> (Part, Film) {
-    picture.render_part(picture.scene.settings.size, &Plane::ALL, observer)
+    picture.render_part(picture.scene.settings().size, &Plane::ALL, observer)
 }
 
 /// Without this the next test would prove nothing.
@@ -102,11 +107,15 @@ fn rendered(picture: &PreparedScene, observer: &dyn Observer) -> (Part, Film) {
 fn every_evaluation_is_asked_for_before() {
     let renderer = CpuRenderer::new(Some(2)).unwrap();
     for (name, mut scene) in slow() {
-        scene.settings.size = [24, 16];
-        scene.lights.truncate(3);
-        scene.settings.max_steps = scene.settings.max_steps.min(300);
-        scene.settings.discontinuity_reduction = scene.settings.discontinuity_reduction.min(3);
-        let few = match scene.settings.occlusion {
+        scene
+            .edit(|s| {
+                s.settings.size = [24, 16];
+                s.lights.truncate(3);
+                s.settings.max_steps = s.settings.max_steps.min(300);
+                s.settings.discontinuity_reduction = s.settings.discontinuity_reduction.min(3);
+            })
+            .expect("a scene");
+        let few = match scene.settings().occlusion {
             Occlusion::Hemisphere { reach, .. } => Occlusion::Hemisphere { rays: 3, reach },
             Occlusion::Obscurance { reach, tau, .. } => Occlusion::Obscurance {
                 rays: 3,
@@ -121,12 +130,18 @@ fn every_evaluation_is_asked_for_before() {
                 scale: 1.0,
             },
         };
-        scene.settings.occlusion = few;
-        if let Antialias::Supersample { samples, .. } = &mut scene.settings.antialias {
-            *samples = 3;
-        }
+        scene
+            .edit(|s| {
+                s.settings.occlusion = few;
+                if let Antialias::Supersample { samples, .. } = &mut s.settings.antialias {
+                    *samples = 3;
+                }
+            })
+            .expect("a scene");
         for normals in [Normals::Exact, Normals::Samples26, Normals::Tetrahedron] {
-            scene.settings.normals = normals;
+            scene
+                .edit(|s| s.settings.normals = normals)
+                .expect("a scene");
             let picture = renderer.prepare_scene(Arc::new(scene.clone())).unwrap();
             let (part, _) = rendered(&picture, &Silent);
             assert!(part.is_whole && part.spent > 0, "{name}");
@@ -161,7 +176,9 @@ fn work_ends_soon_after_it_is_not_wanted() {
 fn tiles_of_a_part_are_those_of_the_whole() {
     let renderer = CpuRenderer::new(Some(1)).unwrap();
     let mut scene = sphere_box_ground();
-    scene.settings.size = [200, 100];
+    scene
+        .edit(|s| s.settings.size = [200, 100])
+        .expect("a scene");
     for antialias in [
         Antialias::None,
         Antialias::Supersample {
@@ -169,7 +186,9 @@ fn tiles_of_a_part_are_those_of_the_whole() {
             filter: Filter::Box,
         },
     ] {
-        scene.settings.antialias = antialias;
+        scene
+            .edit(|s| s.settings.antialias = antialias)
+            .expect("a scene");
         let picture = renderer.prepare_scene(Arc::new(scene.clone())).unwrap();
         let (part, whole) = rendered(&picture, &Silent);
         assert!(part.is_whole);
@@ -205,14 +224,15 @@ fn tiles_of_a_part_are_those_of_the_whole() {
 fn samples_can_be_added_later() {
     let renderer = CpuRenderer::new(Some(2)).unwrap();
     let mut scene = sphere_box_ground();
-    scene.settings.size = [100, 70];
-    scene.settings.antialias = Antialias::Supersample {
+    let antialias = Antialias::Supersample {
         samples: 7,
         filter: Filter::Mitchell,
     };
-    let camera = scene.camera;
+    scene
+        .edit(|s| (s.settings.size, s.settings.antialias) = ([100, 70], antialias))
+        .unwrap();
+    let (camera, settings) = (*scene.camera(), *scene.settings());
     let at_once = renderer.render(&scene, &Silent).unwrap().film;
-    let settings = scene.settings;
     let mut prepared = renderer.prepare(Arc::new(scene)).unwrap();
     let mut sums = Accumulator::new(settings.size, settings.antialias, &Plane::ALL);
     for samples in [0..1, 1..4, 4..7] {
@@ -238,24 +258,27 @@ fn samples_can_be_added_later() {
 fn updated_scenes_are_new_scenes() {
     let renderer = CpuRenderer::new(Some(2)).unwrap();
     let mut scene = sphere_box_ground();
-    scene.settings.size = [64, 48];
+    scene.edit(|s| s.settings.size = [64, 48]).unwrap();
     let mut prepared = renderer.prepare(Arc::new(scene.clone())).unwrap();
     let mut check = |scene: &Scene| {
-        let settings = scene.settings;
+        let settings = scene.settings();
         prepared.update(Arc::new(scene.clone())).unwrap();
         let mut sums = Accumulator::new(settings.size, settings.antialias, &Plane::ALL);
         let samples = 0..sums.wanted();
         prepared
-            .sample(&scene.camera, samples, &mut sums, &Silent)
+            .sample(scene.camera(), samples, &mut sums, &Silent)
             .unwrap();
         let fresh = renderer.render(scene, &Silent).unwrap().film;
         assert!(sums.into_film() == fresh);
     };
     check(&scene);
-    scene.settings.occlusion = Occlusion::None;
-    scene.lights.clear();
+    let plain = |s: &mut SceneParts| {
+        s.settings.occlusion = Occlusion::None;
+        s.lights.clear();
+    };
+    scene.edit(plain).unwrap();
     check(&scene);
     let ball = Field::primitive(&catalogue().primitives[0], vec![0.4]).unwrap();
-    scene.objects[0].field = ball;
+    scene.edit(|s| s.objects[0].field = ball).unwrap();
     check(&scene);
 }

@@ -23,18 +23,22 @@ fn stream_and_plain_agree() {
     for march in MARCHERS {
         for prepass in [true, false] {
             for mut scene in [tomczak(), blend()] {
-                scene.settings = Settings {
-                    march,
-                    prepass,
-                    max_steps: 2000,
-                    ..quick()
-                };
-                scene.camera.far = 30.0;
+                scene
+                    .edit(|s| {
+                        s.settings = Settings {
+                            march,
+                            prepass,
+                            max_steps: 2000,
+                            ..quick()
+                        };
+                        s.camera.far = 30.0;
+                    })
+                    .expect("a scene");
                 same(
                     &scene,
                     &stream(&scene),
                     &reference(&scene),
-                    &format!("{} with {march:?}, {prepass}", scene.name),
+                    &format!("{} with {march:?}, {prepass}", scene.name()),
                 );
             }
         }
@@ -48,12 +52,12 @@ fn oracle(scene: &Scene) -> Vec<Option<f64>> {
         .prepare_scene(scene.clone().into())
         .map(|p| p.program().clone());
     let program = picture.expect("a program");
-    let [width, height] = scene.settings.size;
-    let (slope, constant) = scene.camera.pixel_width(height);
+    let [width, height] = scene.settings().size;
+    let (slope, constant) = scene.camera().pixel_width(height);
     let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
     let march = |(x, y): (u32, u32)| {
         let (o, d) = scene
-            .camera
+            .camera()
             .ray(x as f32 + 0.5, y as f32 + 0.5, [width, height]);
         let [o, d] = [o, d].map(|v| v.to_array().map(f64::from));
         let least = |t: f64| 0.25 * (f64::from(slope) * t + f64::from(constant)) + 1e-6;
@@ -61,8 +65,8 @@ fn oracle(scene: &Scene) -> Vec<Option<f64>> {
             &program,
             o,
             d,
-            f64::from(scene.camera.near),
-            f64::from(scene.camera.far),
+            f64::from(scene.camera().near),
+            f64::from(scene.camera().far),
             least,
         )
     };
@@ -72,7 +76,7 @@ fn oracle(scene: &Scene) -> Vec<Option<f64>> {
 /// Hits of the oracle that the film does not have, other than beside silhouettes.
 fn missed(scene: &Scene, film: &Film, oracle: &[Option<f64>]) -> usize {
     let width = film.width() as usize;
-    let (slope, constant) = scene.camera.pixel_width(film.height());
+    let (slope, constant) = scene.camera().pixel_width(film.height());
     let passed = |(i, t): (usize, &Option<f64>)| {
         let found = f64::from(film.plane(Plane::Depth)[i]);
         t.is_some_and(|t| found > t + 3.0 * (f64::from(slope) * t + f64::from(constant)))
@@ -84,23 +88,31 @@ fn missed(scene: &Scene, film: &Film, oracle: &[Option<f64>]) -> usize {
 #[test]
 fn none_misses_what_a_dense_march_finds() {
     for mut scene in [tomczak(), blend(), city()] {
-        scene.camera.far = 25.0;
-        scene.settings = Settings {
-            size: [64, 48],
-            max_steps: 4000,
-            ..quick()
-        };
+        scene
+            .edit(|s| {
+                s.camera.far = 25.0;
+                s.settings = Settings {
+                    size: [64, 48],
+                    max_steps: 4000,
+                    ..quick()
+                };
+            })
+            .expect("a scene");
         let oracle = oracle(&scene);
         for march in MARCHERS {
             for prepass in [true, false] {
-                scene.settings.march = march;
-                scene.settings.prepass = prepass;
+                scene
+                    .edit(|s| {
+                        s.settings.march = march;
+                        s.settings.prepass = prepass;
+                    })
+                    .expect("a scene");
                 let film = stream(&scene);
                 assert_eq!(
                     missed(&scene, &film, &oracle),
                     0,
                     "{} with {march:?}, {prepass}",
-                    scene.name
+                    scene.name()
                 );
             }
         }
@@ -112,13 +124,17 @@ fn relaxation_and_cones_save_evaluations() {
     use zeroset_scene::render::{Renderer, Silent};
     let mut scene = city();
     let mut cost = |march, prepass| {
-        scene.settings = Settings {
-            size: [256, 256],
-            march,
-            prepass,
-            discontinuity_reduction: 0,
-            ..quick()
-        };
+        scene
+            .edit(|s| {
+                s.settings = Settings {
+                    size: [256, 256],
+                    march,
+                    prepass,
+                    discontinuity_reduction: 0,
+                    ..quick()
+                }
+            })
+            .expect("a scene");
         let statistics = CpuRenderer::new(Some(2))
             .expect("threads")
             .render(&scene, &Silent)
@@ -137,20 +153,23 @@ fn relaxation_and_cones_save_evaluations() {
 #[test]
 fn rays_out_of_steps_take_their_best_candidate() {
     let mut scene = tomczak();
-    scene.camera.eye.y = 1.9;
     scene
-        .lights
-        .iter_mut()
-        .for_each(|l| l.shadow = Shadow::None);
-    scene.settings = Settings {
-        max_steps: 6,
-        prepass: false,
-        march: March::Sphere,
-        discontinuity_reduction: 0,
-        ..quick()
-    };
+        .edit(|s| {
+            s.camera.eye.y = 1.9;
+            s.lights.iter_mut().for_each(|l| l.shadow = Shadow::None);
+            s.settings = Settings {
+                max_steps: 6,
+                prepass: false,
+                march: March::Sphere,
+                discontinuity_reduction: 0,
+                ..quick()
+            };
+        })
+        .expect("a scene");
     for hit_selection in [true, false] {
-        scene.settings.hit_selection = hit_selection;
+        scene
+            .edit(|s| s.settings.hit_selection = hit_selection)
+            .expect("a scene");
         let what = format!("few steps, {hit_selection}");
         same(&scene, &stream(&scene), &reference(&scene), &what);
     }

@@ -7,12 +7,12 @@ use zeroset_scene::settings::{Antialias, Filter, Normals, Occlusion, Settings, S
 
 fn agree(settings: Settings) {
     for mut scene in [tomczak(), blend()] {
-        scene.settings = settings;
+        scene.edit(|s| s.settings = settings).expect("a scene");
         same(
             &scene,
             &stream(&scene),
             &reference(&scene),
-            &format!("{} with {settings:?}", scene.name),
+            &format!("{} with {settings:?}", scene.name()),
         );
     }
 }
@@ -108,13 +108,17 @@ fn sampled_occlusion() {
 #[test]
 fn occlusion_of_objects() {
     let mut scene = tomczak();
-    scene.objects[0].occlusion = Some(Occlusion::Bent {
-        steps: 5,
-        step: 0.12,
-        scale: 0.5,
-        bend: 0.2,
-    });
-    scene.objects[1].occlusion = Some(Occlusion::Upward { scale: 0.5 });
+    scene
+        .edit(|s| {
+            s.objects[0].occlusion = Some(Occlusion::Bent {
+                steps: 5,
+                step: 0.12,
+                scale: 0.5,
+                bend: 0.2,
+            });
+            s.objects[1].occlusion = Some(Occlusion::Upward { scale: 0.5 });
+        })
+        .expect("a scene");
     same(
         &scene,
         &stream(&scene),
@@ -133,12 +137,14 @@ fn shadows() {
         Shadow::SoftClosest { sharpness: 12.0 },
     ] {
         for mut scene in [tomczak(), blend()] {
-            scene.lights.iter_mut().for_each(|l| l.shadow = shadow);
+            scene
+                .edit(|s| s.lights.iter_mut().for_each(|l| l.shadow = shadow))
+                .expect("a scene");
             same(
                 &scene,
                 &stream(&scene),
                 &reference(&scene),
-                &format!("{} with {shadow:?}", scene.name),
+                &format!("{} with {shadow:?}", scene.name()),
             );
         }
     }
@@ -158,7 +164,9 @@ fn antialiasing() {
 #[test]
 fn lenses() {
     for mut scene in [tomczak(), blend()] {
-        scene.camera.lens = Lens::Orthographic { height: 3.5 };
+        scene
+            .edit(|s| s.camera.lens = Lens::Orthographic { height: 3.5 })
+            .expect("a scene");
         same(&scene, &stream(&scene), &reference(&scene), "orthographic");
     }
 }

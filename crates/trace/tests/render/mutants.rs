@@ -11,10 +11,14 @@ use zeroset_trace::plain::{self, Compiled, Mark, Probe, Quality};
 
 fn scene() -> Scene {
     let mut scene = tomczak();
-    scene.settings = Settings {
-        march: March::Sphere,
-        ..quick()
-    };
+    scene
+        .edit(|s| {
+            s.settings = Settings {
+                march: March::Sphere,
+                ..quick()
+            }
+        })
+        .expect("a scene");
     scene
 }
 
@@ -70,7 +74,9 @@ fn too_long_steps_are_refused() {
 #[test]
 fn wrong_normals_are_refused() {
     let mut scene = scene();
-    scene.settings.normals = zeroset_scene::settings::Normals::Exact;
+    scene
+        .edit(|s| s.settings.normals = zeroset_scene::settings::Normals::Exact)
+        .expect("a scene");
     let off = differing(&scene, &stream(&scene), &faulty(&scene, 1.0, -1.0));
     assert!(off.iter().any(|d| d.plane == Plane::Normal), "{off:?}");
 }

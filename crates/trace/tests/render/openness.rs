@@ -93,8 +93,8 @@ fn program(scene: &Scene) -> Program {
 
 /// What the pixels of a picture without antialiasing show, refined in double precision.
 fn hits(scene: &Scene, film: &Film, oracle: &mut Oracle<'_>) -> Vec<Hit> {
-    let settings = &scene.settings;
-    let view = View::new(&scene.camera, settings.size, settings.footprint);
+    let settings = scene.settings();
+    let view = View::new(scene.camera(), settings.size, settings.footprint);
     let (depth, object) = (film.plane(Plane::Depth), film.plane(Plane::Object));
     let mut found = Vec::new();
     for (pixel, &t) in depth.iter().enumerate().filter(|(_, t)| t.is_finite()) {
@@ -134,11 +134,15 @@ fn scene(text: &str, size: [u32; 2]) -> Scene {
         &Options::default(),
     );
     let mut scene = loaded.unwrap_or_else(|e| panic!("{}", e.report)).scene;
-    scene.settings = Settings {
-        size,
-        occlusion: CONES,
-        ..quick()
-    };
+    scene
+        .edit(|s| {
+            s.settings = Settings {
+                size,
+                occlusion: CONES,
+                ..quick()
+            }
+        })
+        .expect("a scene");
     scene
 }
 
@@ -235,13 +239,17 @@ fn tomczak_against_rays() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
         let loaded = load(&path, &Options::default());
         let mut scene = loaded.unwrap_or_else(|e| panic!("{}", e.report)).scene;
-        scene.settings = Settings {
-            size: [40, 30],
-            ..quick()
-        };
-        for object in &mut scene.objects {
-            object.occlusion = None;
-        }
+        scene
+            .edit(|s| {
+                s.settings = Settings {
+                    size: [40, 30],
+                    ..quick()
+                };
+                for object in &mut s.objects {
+                    object.occlusion = None;
+                }
+            })
+            .expect("a scene");
         let program = program(&scene);
         let mut oracle = Oracle(Point::new(program.values()));
         let film = stream(&scene);
@@ -250,7 +258,9 @@ fn tomczak_against_rays() {
             .map(|h| oracle.open(h, 16, 200.0, h.pixel as u64 + 1))
             .collect();
         for (method, occlusion, allowed) in methods {
-            scene.settings.occlusion = occlusion;
+            scene
+                .edit(|s| s.settings.occlusion = occlusion)
+                .expect("a scene");
             let renderer = CpuRenderer::new(Some(2)).expect("threads");
             let frame = renderer.render(&scene, &Silent).expect("a picture");
             let open = frame.film.plane(Plane::Occlusion);

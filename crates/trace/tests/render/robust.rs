@@ -39,12 +39,16 @@ fn threads_do_not_change_the_picture() {
                     reach: Some(1.0),
                 },
             ] {
-                scene.settings = Settings {
-                    size: [150, 75],
-                    antialias,
-                    occlusion,
-                    ..quick()
-                };
+                scene
+                    .edit(|s| {
+                        s.settings = Settings {
+                            size: [150, 75],
+                            antialias,
+                            occlusion,
+                            ..quick()
+                        }
+                    })
+                    .expect("a scene");
                 let render = |threads| {
                     CpuRenderer::new(Some(threads))
                         .expect("threads")
@@ -84,12 +88,18 @@ fn a_second_rendering_is_equal() {
 fn limited_sums_are_equal() {
     for filter in [Filter::Box, Filter::Tent, Filter::Mitchell] {
         let mut scene = blend();
-        scene.settings = Settings {
-            antialias: Antialias::Supersample { samples: 2, filter },
-            ..quick()
-        };
+        scene
+            .edit(|s| {
+                s.settings = Settings {
+                    antialias: Antialias::Supersample { samples: 2, filter },
+                    ..quick()
+                }
+            })
+            .expect("a scene");
         // seven rows of tiles, the last one of a few lines
-        scene.settings.size = [70, 198];
+        scene
+            .edit(|s| s.settings.size = [70, 198])
+            .expect("a scene");
         let row = 2 * 70_000;
         let render = |threads, sums| {
             let renderer = CpuRenderer::new(Some(threads)).expect("threads");
@@ -159,11 +169,15 @@ fn odd_sizes() {
             },
         ] {
             let mut scene = blend();
-            scene.settings = Settings {
-                size,
-                antialias,
-                ..quick()
-            };
+            scene
+                .edit(|s| {
+                    s.settings = Settings {
+                        size,
+                        antialias,
+                        ..quick()
+                    }
+                })
+                .expect("a scene");
             let (a, b) = (stream(&scene), reference(&scene));
             assert_eq!([a.width(), a.height()], size);
             for (p, q) in a.plane(Plane::Colour).iter().zip(b.plane(Plane::Colour)) {
@@ -185,7 +199,7 @@ fn odd_sizes() {
 #[test]
 fn nothing_is_sky() {
     let mut scene = view([0.0, 0.0, 5.0], [0.0, 0.0, 0.0], 0.8);
-    scene.settings.size = [20, 10];
+    scene.edit(|s| s.settings.size = [20, 10]).expect("a scene");
     let film = stream(&scene);
     assert!(film.plane(Plane::Coverage).iter().all(|c| *c == 0.0));
     assert!(film.plane(Plane::Depth).iter().all(|t| *t == f32::INFINITY));
@@ -197,14 +211,14 @@ fn nothing_is_sky() {
 fn a_camera_within_the_solid() {
     let mut scene = view([0.1, 0.2, 0.1], [1.0, 0.4, -0.3], 1.2);
     scene
-        .objects
-        .push(object(shape("box", &[2.0, 2.0, 2.0]), 0));
+        .edit(|s| s.objects.push(object(shape("box", &[2.0, 2.0, 2.0]), 0)))
+        .expect("a scene");
     let film = stream(&scene);
     same(&scene, &film, &reference(&scene), "inside");
     assert!(film.plane(Plane::Object).iter().all(|o| *o == 1.0));
     assert!(film.plane(Plane::Depth).iter().all(|t| *t < 2.0));
     // normals look inwards
-    let (o, d) = scene.camera.ray(48.0, 36.0, scene.settings.size);
+    let (o, d) = scene.camera().ray(48.0, 36.0, scene.settings().size);
     let at = 36 * 96 + 48;
     let normal = glam::Vec3::from_slice(&film.plane(Plane::Normal)[3 * at..][..3]);
     assert!(normal.dot(d) < -0.3 && o.length() < 1.0);
@@ -212,26 +226,34 @@ fn a_camera_within_the_solid() {
 
 fn scaled(scene: &Scene, scale: f32) -> Scene {
     let mut scene = scene.clone();
-    for object in &mut scene.objects {
-        object.field = object
-            .field
-            .place(Placement::scaled(f64::from(scale)))
-            .expect("a place");
-    }
-    scene.camera.eye *= scale;
-    scene.camera.far *= scale;
-    if let Lens::Orthographic { height } = &mut scene.camera.lens {
-        *height *= scale;
-    }
-    if let Occlusion::Quilez {
-        step,
-        scale: strength,
-        ..
-    } = &mut scene.settings.occlusion
-    {
-        *step *= scale;
-        *strength /= scale;
-    }
+    scene
+        .edit(|s| {
+            for object in &mut s.objects {
+                object.field = object
+                    .field
+                    .place(Placement::scaled(f64::from(scale)))
+                    .expect("a place");
+            }
+            s.camera.eye *= scale;
+            s.camera.far *= scale;
+            if let Lens::Orthographic { height } = &mut s.camera.lens {
+                *height *= scale;
+            }
+        })
+        .expect("a scene");
+    scene
+        .edit(|s| {
+            if let Occlusion::Quilez {
+                step,
+                scale: strength,
+                ..
+            } = &mut s.settings.occlusion
+            {
+                *step *= scale;
+                *strength /= scale;
+            }
+        })
+        .expect("a scene");
     scene
 }
 
@@ -252,10 +274,14 @@ fn scale_does_not_matter() {
 fn far_from_the_origin() {
     // single precision holds 1/16 at most a million away: it must end in a picture, not in a hang or holes
     let mut scene = tomczak();
-    for object in &mut scene.objects[..2] {
-        object.field = moved(&object.field, [4096.0, 0.0, -4096.0]);
-    }
-    scene.camera.eye += glam::Vec3::new(4096.0, 0.0, -4096.0);
+    scene
+        .edit(|s| {
+            for object in &mut s.objects[..2] {
+                object.field = moved(&object.field, [4096.0, 0.0, -4096.0]);
+            }
+            s.camera.eye += glam::Vec3::new(4096.0, 0.0, -4096.0);
+        })
+        .expect("a scene");
     let film = stream(&scene);
     same(&scene, &film, &reference(&scene), "far away");
     let near = stream(&tomczak());
@@ -267,11 +293,15 @@ fn far_from_the_origin() {
 fn a_bare_plane_is_wholly_open() {
     for eye in [[0.0, 1.0, 3.0], [5.0, 0.3, -2.0], [0.0, 20.0, 0.1]] {
         let mut scene = view(eye, [0.0, 0.0, 0.0], 0.7);
-        scene.objects.push(object(shape("plane", &[]), 0));
-        scene.settings.occlusion = Occlusion::Cones {
-            reach: None,
-            steps: 14,
-        };
+        scene
+            .edit(|s| {
+                s.objects.push(object(shape("plane", &[]), 0));
+                s.settings.occlusion = Occlusion::Cones {
+                    reach: None,
+                    steps: 14,
+                };
+            })
+            .expect("a scene");
         for film in [stream(&scene), reference(&scene)] {
             let pixels = film
                 .plane(Plane::Occlusion)

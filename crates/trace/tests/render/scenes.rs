@@ -9,7 +9,7 @@ use zeroset_scene::film::Film;
 use zeroset_scene::light::{Light, Source};
 use zeroset_scene::material::{Material, Pattern};
 use zeroset_scene::render::{Renderer, Silent};
-use zeroset_scene::scene::{Object, Scene};
+use zeroset_scene::scene::{Object, Scene, SceneParts};
 use zeroset_scene::settings::{Antialias, Occlusion, Settings, Shadow};
 use zeroset_trace::CpuRenderer;
 use zeroset_trace::bench::sphere_box_ground;
@@ -50,7 +50,7 @@ pub fn blend() -> Scene {
         colour: Vec3::new(r, g, b),
     };
     let plain = Material::default();
-    Scene {
+    let parts = SceneParts {
         name: "blend".into(),
         objects: vec![object(body, 1), object(shape("plane", &[]), 0)],
         materials: vec![
@@ -89,17 +89,22 @@ pub fn blend() -> Scene {
                 shadow: Shadow::Hard,
             },
         ],
-        ..view([2.0, 1.8, 3.0], [0.0, 0.4, 0.0], 0.6)
-    }
+        ..view([2.0, 1.8, 3.0], [0.0, 0.4, 0.0], 0.6).into_parts()
+    };
+    parts.build().expect("a scene")
 }
 
 /// An empty scene with a view.
 pub fn view(eye: [f32; 3], target: [f32; 3], fov: f32) -> Scene {
     let lens = Lens::Pinhole { fov };
     let mut scene = sphere_box_ground();
-    scene.objects.clear();
-    scene.camera = Camera::look_at(eye.into(), target.into(), Vec3::Y, lens).expect("a view");
-    scene.settings = quick();
+    scene
+        .edit(|s| {
+            s.objects.clear();
+            s.camera = Camera::look_at(eye.into(), target.into(), Vec3::Y, lens).expect("a view");
+            s.settings = quick();
+        })
+        .expect("a scene");
     scene
 }
 
@@ -120,7 +125,7 @@ pub fn quick() -> Settings {
 /// Tomczak's scene, small.
 pub fn tomczak() -> Scene {
     let mut scene = sphere_box_ground();
-    scene.settings = quick();
+    scene.edit(|s| s.settings = quick()).expect("a scene");
     scene
 }
 

@@ -24,16 +24,24 @@ fn written(text: &str, size: u32) -> Scene {
     };
     let loaded = load_text("test.star", text, Language::Starlark, None, &options);
     let mut scene = loaded.expect("a scene").scene;
-    scene.settings.occlusion = Occlusion::None;
-    scene.settings.antialias = Antialias::None;
+    scene
+        .edit(|s| {
+            s.settings.occlusion = Occlusion::None;
+            s.settings.antialias = Antialias::None;
+        })
+        .expect("a scene");
     scene
 }
 
 fn supersampled(scene: &mut Scene) {
-    scene.settings.antialias = Antialias::Supersample {
-        samples: 4,
-        filter: Filter::Mitchell,
-    };
+    scene
+        .edit(|s| {
+            s.settings.antialias = Antialias::Supersample {
+                samples: 4,
+                filter: Filter::Mitchell,
+            }
+        })
+        .expect("a scene");
 }
 
 /// Sum of the coverage of all pixels.
@@ -60,8 +68,8 @@ fn shadow_of(f: impl Fn(f64, f64, f64) -> f64, h: f64, n: usize) -> f64 {
 
 /// How many pixels of an orthographic view along -z show a normal that is not that of the first root along their ray.
 fn turned(scene: &Scene, film: &Film, f: &dyn Fn(f64, f64, f64) -> f64) -> usize {
-    let [width, height] = scene.settings.size;
-    let view = zeroset_shade::view::View::new(&scene.camera, [width, height], 1.0);
+    let [width, height] = scene.settings().size;
+    let view = zeroset_shade::view::View::new(scene.camera(), [width, height], 1.0);
     let mut wrong = 0;
     for (i, (x, y)) in (0..height)
         .flat_map(|y| (0..width).map(move |x| (x, y)))
@@ -279,10 +287,14 @@ fn look(scene: &mut Scene, eye: [f64; 3], fov: f64) {
     };
     let eye = Vec3::from(eye.map(|c| c as f32));
     let far = 1e5;
-    scene.camera = Camera {
-        far,
-        ..Camera::look_at(eye, Vec3::ZERO, Vec3::Y, lens).expect("a view")
-    };
+    scene
+        .edit(|s| {
+            s.camera = Camera {
+                far,
+                ..Camera::look_at(eye, Vec3::ZERO, Vec3::Y, lens).expect("a view")
+            }
+        })
+        .expect("a scene");
 }
 
 /// A ray that goes along a plane, or through a gap, comes out at the other end.
@@ -323,10 +335,14 @@ fn rays_never_begin_behind_a_surface() {
         }
         let field = Field::primitive(entry, entry.info.defaults()).expect("defaults fit");
         let mut scene = view([0.0, 0.0, 4.0], [0.0; 3], 0.7);
-        scene.settings = quick();
-        scene.settings.occlusion = Occlusion::None;
-        scene.settings.size = [48, 48];
-        scene.lights.clear();
+        scene
+            .edit(|s| {
+                s.settings = quick();
+                s.settings.occlusion = Occlusion::None;
+                s.settings.size = [48, 48];
+                s.lights.clear();
+            })
+            .expect("a scene");
         let bounds = field.facts().bounds;
         let reach = if bounds.is_finite() {
             let h = bounds.half();
@@ -335,7 +351,9 @@ fn rays_never_begin_behind_a_surface() {
             2.0
         };
         let centre = Vec3::from(bounds.centre().map(|c| c as f32));
-        scene.objects.push(object(field.clone(), 0));
+        scene
+            .edit(|s| s.objects.push(object(field.clone(), 0)))
+            .expect("a scene");
         for number in 0..5 {
             let h = |k: u32| ((number * 7919 + k * 104_729 + 31) % 2003) as f32 / 1001.5 - 1.0;
             let away = Vec3::new(h(1), h(2) * 0.8 + 0.1, h(3) + 0.05).normalize_or(Vec3::Z);
@@ -351,7 +369,9 @@ fn rays_never_begin_behind_a_surface() {
                 continue;
             };
             let far = 20.0 * reach as f32 + 20.0;
-            scene.camera = Camera { far, ..camera };
+            scene
+                .edit(|s| s.camera = Camera { far, ..camera })
+                .expect("a scene");
             let bad = behind(&scene);
             if bad > 0 {
                 failures.push(format!("{} from {eye}: {bad} pixels", entry.info.name));
@@ -368,8 +388,8 @@ fn behind(scene: &Scene) -> usize {
     let picture = renderer
         .prepare_scene(scene.clone().into())
         .expect("a program");
-    let [width, height] = scene.settings.size;
-    let (slope, constant) = scene.camera.pixel_width(height);
+    let [width, height] = scene.settings().size;
+    let (slope, constant) = scene.camera().pixel_width(height);
     let mut bad = 0;
     let mut point = Point::<F64>::new(picture.program().values());
     for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
@@ -378,7 +398,7 @@ fn behind(scene: &Scene) -> usize {
             continue;
         }
         let (o, d) = scene
-            .camera
+            .camera()
             .ray(x as f32 + 0.5, y as f32 + 0.5, [width, height]);
         let [o, d] = [o, d].map(|v| v.to_array().map(f64::from));
         let pixel = |t: f64| f64::from(slope) * t + f64::from(constant);
@@ -387,7 +407,7 @@ fn behind(scene: &Scene) -> usize {
             let p: [F64; 3] = std::array::from_fn(|k| F64(o[k] + d[k] * t));
             point.value(v3(p[0], p[1], p[2])).0
         };
-        let far = f64::from(scene.camera.far);
+        let far = f64::from(scene.camera().far);
         let Some(t) = dense::march(picture.program(), o, d, 0.0, far, least) else {
             // a ray that touches an edge, as far as single precision tells
             bad += usize::from(f(found).abs() > 1e-6);
@@ -427,12 +447,16 @@ fn surfaces_face_the_eye() {
             March::Auto { beta: 0.3 },
         ] {
             for prepass in [true, false] {
-                (scene.settings.march, scene.settings.prepass) = (march, prepass);
+                scene
+                    .edit(|s| (s.settings.march, s.settings.prepass) = (march, prepass))
+                    .expect("a scene");
                 let film = stream(&scene);
                 let mut away = 0;
                 for (i, n) in film.plane(Plane::Normal).chunks(3).enumerate() {
                     let (x, y) = (i % 160, i / 160);
-                    let (_, d) = scene.camera.ray(x as f32 + 0.5, y as f32 + 0.5, [160, 160]);
+                    let (_, d) = scene
+                        .camera()
+                        .ray(x as f32 + 0.5, y as f32 + 0.5, [160, 160]);
                     away += u32::from(Vec3::from_slice(n).dot(d) > 0.01);
                 }
                 assert_eq!(away, 0, "{text} {march:?} {prepass}");
@@ -446,8 +470,8 @@ fn surfaces_face_the_eye() {
 fn the_inside_is_seen() {
     let mut scene = view([0.1, 0.2, 0.1], [1.0, 0.4, -0.3], 1.2);
     scene
-        .objects
-        .push(object(shape("box", &[2.0, 2.0, 2.0]), 0));
+        .edit(|s| s.objects.push(object(shape("box", &[2.0, 2.0, 2.0]), 0)))
+        .expect("a scene");
     let film = stream(&scene);
     assert_eq!(share(&film), 1.0);
     let colours = film.plane(Plane::Colour);
@@ -488,7 +512,9 @@ fn a_stated_slope_changes_no_light() {
             "show({shape}.move(y = 1))\nshow(plane())\nsun(direction = (-1, -2, -1), shadow = soft(8))\ncamera(eye = (2, 3, 5), target = (0, 0.8, 0), fov = 40)"
         );
         let mut scene = written(&text, 64);
-        scene.settings.occlusion = zeroset_scene::settings::Settings::default().occlusion;
+        scene
+            .edit(|s| s.settings.occlusion = zeroset_scene::settings::Settings::default().occlusion)
+            .expect("a scene");
         stream(&scene)
     };
     let right = picture("sphere(1)");
@@ -546,10 +572,14 @@ fn light_falls_through_skins() {
                     ),
                     96,
                 );
-                scene.settings.occlusion = Occlusion::Cones {
-                    reach: None,
-                    steps: 14,
-                };
+                scene
+                    .edit(|s| {
+                        s.settings.occlusion = Occlusion::Cones {
+                            reach: None,
+                            steps: 14,
+                        }
+                    })
+                    .expect("a scene");
                 stream(&scene)
             };
             let (skin, open) = (film(ends), film(sticks_out));

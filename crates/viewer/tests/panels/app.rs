@@ -381,7 +381,7 @@ fn texts_of_a_stranger_are_shown_clean_and_cut() {
         let mut picked = rendered(|session| session.absorb(outcome(&script, &Options::default())));
         let scene = &picked.current.as_ref().unwrap().scene;
         let film = &picked.shown.as_ref().unwrap().sides[0].film;
-        picked.picked = pick(film, &scene.camera, scene, [0.5, 0.5]);
+        picked.picked = pick(film, scene.camera(), scene, [0.5, 0.5]);
         assert!(picked.picked.is_some());
         let mut broken = rendered(|_| {});
         broken.trouble = Some(format!("{text} is wrong"));
@@ -407,7 +407,9 @@ fn a_picture_is_named_after_the_file() {
     let mut session = rendered(|_| {});
     let current = session.current.as_mut().unwrap();
     let mut scene = (*current.scene).clone();
-    scene.name = "/etc/../../victim".to_owned();
+    scene
+        .edit(|s| s.name = "/etc/../../victim".to_owned())
+        .expect("a scene");
     current.scene = std::sync::Arc::new(scene);
     let closed = Window::Closed(Some(Box::new(session)));
     let mut harness = Harness::builder()

@@ -61,7 +61,7 @@ fn parameters_change_what_is_loaded() {
             .as_ref()
             .unwrap()
             .scene
-            .objects
+            .objects()
             .len(),
         1
     );

@@ -71,7 +71,7 @@ pub(crate) fn frame(scene: &Scene, threads: usize) -> Result<Frames, RenderError
             threads,
             reason: e.to_string(),
         })?;
-    let size = scene.settings.size;
+    let size = scene.settings().size;
     let mut film = Film::new(0, 0);
     let (mut streamed, mut plain_time) = (f64::MAX, f64::MAX);
     let mut reference = None;

@@ -66,7 +66,7 @@ pub(crate) fn frame(
     let cpu = CpuRenderer::new(Some(threads))?;
     let picture = cpu.prepare_scene(scene.clone().into())?;
     let job = gpu.job(scene)?;
-    let settings = scene.settings;
+    let settings = scene.settings();
     let by_the_gpu = || {
         let mut sums = Accumulator::new(settings.size, settings.antialias, &[Plane::Colour]);
         let samples = 0..sums.wanted();

@@ -43,13 +43,13 @@ fn marchers() -> Vec<(&'static str, March, bool)> {
 /// Measures a scene.
 pub(crate) fn march(scene: &Scene) -> Result<Marches, RenderError> {
     let renderer = CpuRenderer::new(None)?;
-    let mut scene = scene.clone();
-    scene.settings = Settings {
+    let settings = Settings {
         size: [SIDE, SIDE],
         antialias: Antialias::None,
         occlusion: Occlusion::None,
-        ..scene.settings
+        ..*scene.settings()
     };
+    let mut scene = scene.clone().with_settings(settings)?;
     let solid = surely_hit(&renderer, &scene)?;
     let mut found = Marches {
         rays: u64::from(SIDE) * u64::from(SIDE),
@@ -61,14 +61,14 @@ pub(crate) fn march(scene: &Scene) -> Result<Marches, RenderError> {
         let max_steps = if matches!(march, March::Fixed { .. }) {
             5000
         } else {
-            scene.settings.max_steps
+            Settings::default().max_steps
         };
-        scene.settings = Settings {
+        scene = scene.with_settings(Settings {
             march,
             prepass,
             max_steps,
-            ..scene.settings
-        };
+            ..settings
+        })?;
         let frame = renderer.render(&scene, &Silent)?;
         let e = frame.statistics.evaluations;
         let per_ray = (e.march + e.prepass) as f64 / found.rays as f64;
@@ -80,7 +80,6 @@ pub(crate) fn march(scene: &Scene) -> Result<Marches, RenderError> {
             .filter(|(solid, t)| **solid && !t.is_finite())
             .count();
         found.missed_hits.insert(name.into(), missed as u64);
-        scene.settings.max_steps = Settings::default().max_steps;
     }
     let sphere = found.evaluations_per_ray["sphere"];
     found.share_of_sphere = found
@@ -107,7 +106,7 @@ fn surely_hit(renderer: &CpuRenderer, scene: &Scene) -> Result<Vec<bool>, Render
         .into_par_iter()
         .map(|i| {
             hits(
-                &scene.camera,
+                scene.camera(),
                 (i % (SIDE + 1)) as f32,
                 (i / (SIDE + 1)) as f32,
             )
@@ -122,7 +121,7 @@ fn surely_hit(renderer: &CpuRenderer, scene: &Scene) -> Result<Vec<bool>, Render
                 && corner(1, 0)
                 && corner(0, 1)
                 && corner(1, 1)
-                && hits(&scene.camera, x as f32 + 0.5, y as f32 + 0.5)
+                && hits(scene.camera(), x as f32 + 0.5, y as f32 + 0.5)
         })
         .collect())
 }

@@ -15,6 +15,7 @@ use zeroset_language::load::{Language, Options, load, load_text};
 use zeroset_scene::render::RenderError;
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Normals, Occlusion, Settings};
+use zeroset_scene::valid::SceneError;
 use zeroset_trace as trace;
 
 /// Three joined solids over a floor.
@@ -83,7 +84,7 @@ pub(crate) fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
         Measure::Frame(what) => {
             let scene = match &what.scene {
                 Some(path) => loaded(path)?,
-                None => sphere_box_ground(),
+                None => sphere_box_ground()?,
             };
             #[cfg(feature = "gpu")]
             if let Some(renderer) = crate::backend::gpu(what.backend, what.adapter.as_deref())? {
@@ -127,9 +128,9 @@ pub(crate) fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
 }
 
 /// The scene of the frame benchmark: soft shadows, five samples of occlusion, a ray a pixel.
-fn sphere_box_ground() -> Scene {
-    let mut scene = trace::bench::sphere_box_ground();
-    scene.settings = Settings {
+fn sphere_box_ground() -> Result<Scene, SceneError> {
+    let scene = trace::bench::sphere_box_ground();
+    let settings = Settings {
         occlusion: Occlusion::Quilez {
             steps: 5,
             step: 0.12,
@@ -137,9 +138,9 @@ fn sphere_box_ground() -> Scene {
         },
         antialias: Antialias::None,
         normals: Normals::Exact,
-        ..scene.settings
+        ..*scene.settings()
     };
-    scene
+    scene.with_settings(settings)
 }
 
 fn failed(error: RenderError) -> Failure {

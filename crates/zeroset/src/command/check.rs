@@ -93,7 +93,7 @@ pub(crate) fn run(args: &Check, console: &Console) -> Result<(), Failure> {
 
 fn findings(loaded: &Loaded, program: Option<&Program>, cost: Cost) -> Findings {
     let scene = &loaded.scene;
-    let objects: Vec<ObjectFinding> = (scene.objects.iter())
+    let objects: Vec<ObjectFinding> = (scene.objects().iter())
         .map(|object| {
             let facts = object.field.facts();
             ObjectFinding {
@@ -125,17 +125,17 @@ fn findings(loaded: &Loaded, program: Option<&Program>, cost: Cost) -> Findings 
         default: setting(&p.default),
     });
     Findings {
-        scene: scene.name.clone(),
+        scene: scene.name().to_string(),
         files: loaded
             .files
             .iter()
             .map(|f| f.to_string_lossy().into_owned())
             .collect(),
         animated: loaded.animated,
-        width: scene.settings.size[0],
-        height: scene.settings.size[1],
-        lights: scene.lights.len(),
-        materials: scene.materials.len(),
+        width: scene.settings().size[0],
+        height: scene.settings().size[1],
+        lights: scene.lights().len(),
+        materials: scene.materials().len(),
         parameters: parameters.collect(),
         proven: objects.iter().all(|o| o.unproven.is_empty()),
         objects,

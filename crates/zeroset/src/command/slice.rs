@@ -54,7 +54,7 @@ pub(crate) fn run(args: &Slice, console: &Console) -> Result<(), Failure> {
         Program::compile(&field, &Limits::default()).map_err(|error| invalid(error.to_string()))?;
     let plane = plane(args, &scene);
     let picture = plane.sample(&program, args.size.0).picture(!args.no_legend);
-    let notes = Notes::new(&scene.name).with("Section", args.plane.to_string());
+    let notes = Notes::new(scene.name()).with("Section", args.plane.to_string());
     write_watched(&path, console, &|| false, |writer, observer| {
         png::write_watched(writer, &picture, Depth::Eight, &notes, observer)
     })?;
@@ -64,7 +64,7 @@ pub(crate) fn run(args: &Slice, console: &Console) -> Result<(), Failure> {
         "{}: {} of {}, {} x {}",
         path.display(),
         args.plane,
-        display::name(&scene.name, display::NAME),
+        display::name(scene.name(), display::NAME),
         shown(width),
         shown(height)
     ));
@@ -98,7 +98,7 @@ fn around(scene: &Scene, plane: &Plane) -> [f64; 4] {
                 .all(|&(k, _)| b.min[k].is_finite() && b.max[k].is_finite())
     };
     let bounds = scene
-        .objects
+        .objects()
         .iter()
         .map(|o| o.field.facts().bounds)
         .filter(finite)

@@ -75,13 +75,13 @@ impl<'a> Job<'a> {
         let _asking = Asking::begin();
         let mut scene = loaded.scene.clone();
         if let Some(march) = self.args.march {
-            scene.settings.march = march.0;
+            scene.edit(|parts| parts.settings.march = march.0)?;
         }
         let mut path = match &self.args.output {
             Some(path) => path.clone(),
             None => unnamed(&self.args.scene.scene, self.args.view, frame.is_some())?,
         };
-        let mut label = scene.name.clone();
+        let mut label = scene.name().to_string();
         if let Some((number, frames)) = frame {
             path = numbered(&path, number, frames);
             if self.args.output.is_none() {
@@ -91,7 +91,7 @@ impl<'a> Job<'a> {
         }
         let (planes, copies) = planes(&path, self.args.view)?;
         (options.limits)
-            .check_picture(scene.settings.size, planes, copies)
+            .check_picture(scene.settings().size, planes, copies)
             .map_err(|e| Failure::new(Exit::Scene, e.to_string()))?;
         probe(&path)?;
         if let Some(name) = survey::around_camera(&scene) {
@@ -153,7 +153,7 @@ impl<'a> Job<'a> {
         lack: Option<&str>,
         cancelled: &(dyn Fn() -> bool + Sync),
     ) -> Result<(), Failure> {
-        let mut notes = Notes::new(&scene.name).with("Settings", json::line(&scene.settings)?);
+        let mut notes = Notes::new(scene.name()).with("Settings", json::line(scene.settings())?);
         if !options.set.is_empty() {
             notes = notes.with("Parameters", json::line(&options.set)?);
         }
@@ -171,10 +171,10 @@ impl<'a> Job<'a> {
                 exr::write_watched(writer, &rendered.film, &notes, observer)
             }),
             Container::Png => {
-                let names: Vec<String> = scene.objects.iter().map(|o| o.name.clone()).collect();
+                let names: Vec<String> = scene.objects().iter().map(|o| o.name.clone()).collect();
                 let view = View {
                     plane: self.args.view,
-                    exposure: scene.settings.exposure,
+                    exposure: scene.settings().exposure,
                     legend: !self.args.no_legend,
                     objects: &names,
                 };
@@ -212,7 +212,7 @@ impl<'a> Job<'a> {
         let statistics = &rendered.statistics;
         let rays = statistics.rays.max(1) as f64;
         let summary = Summary {
-            scene: &scene.name,
+            scene: scene.name(),
             file: PathBuf::from(path).to_string_lossy().into_owned(),
             width: rendered.film.width(),
             height: rendered.film.height(),
@@ -230,7 +230,7 @@ impl<'a> Job<'a> {
             evaluations: Evaluations::of(statistics),
             evaluations_per_ray: statistics.evaluations.total() as f64 / rays,
             finished,
-            settings: &scene.settings,
+            settings: scene.settings(),
         };
         if self.args.json {
             return self.console.emit(&json::line(&summary)?);

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::render::{Frame, Observer, RenderError, Statistics};
 use zeroset_scene::scene::Scene;
-use zeroset_scene::settings::Antialias;
+use zeroset_scene::settings::{Antialias, Settings};
 
 /// The longer side of the first picture, pixels: one tile.
 const FIRST: u32 = 32;
@@ -126,15 +126,18 @@ pub(crate) fn render(
         at: began + limit,
     };
     let wanted = Rung {
-        size: scene.settings.size,
-        antialias: scene.settings.antialias,
+        size: scene.settings().size,
+        antialias: scene.settings().antialias,
     };
     let mut statistics = Statistics::default();
     let mut best: Option<(Film, Rung)> = None;
     let mut used = Used::Cpu;
     for rung in rungs(wanted.size, wanted.antialias) {
-        let mut scene = scene.clone();
-        (scene.settings.size, scene.settings.antialias) = (rung.size, rung.antialias);
+        let scene = scene.clone().with_settings(Settings {
+            size: rung.size,
+            antialias: rung.antialias,
+            ..*scene.settings()
+        })?;
         progress.bar.reset();
         let part = match engine.render_part(&scene, planes, &deadline, restart) {
             Ok(part) => part,

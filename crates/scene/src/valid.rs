@@ -1,0 +1,304 @@
+//! What a scene's numbers may be. [`Scene::new`](crate::scene::Scene::new) asks all of it; whoever reads a part of a scene,
+//! such as a file format, can ask for that part alone and knows where it stands.
+
+mod fault;
+mod methods;
+
+pub use fault::{Fault, SceneError, Step};
+pub use methods::{antialias, march, occlusion, shadow};
+
+use crate::camera::{Camera, Lens};
+use crate::light::{Light, Sky, Source};
+use crate::material::{Image, Material, Pattern};
+use crate::scene::SceneParts;
+use crate::settings::Settings;
+use glam::Vec3;
+use zeroset_catalogue::{Dimension, LARGE, SMALL};
+
+/// What a check says.
+pub type Check = Result<(), SceneError>;
+
+/// Largest coordinate of a light or a gradient.
+const FAR: f32 = 1e12;
+/// Largest linear colour, intensity included.
+const BRIGHT: f32 = 1e12;
+/// Smallest and largest height of an orthographic view, scene units.
+pub const HEIGHT: (f32, f32) = (SMALL as f32, LARGE as f32);
+/// How far the products of a camera's axes may be from those of right-angled ones of length 1.
+pub const UPRIGHT: f64 = 1e-3;
+/// Most objects, and most materials, of a scene: they are numbered with 16 bits, from 1 on.
+pub const OBJECTS: usize = u16::MAX as usize;
+/// Most lights of a scene.
+pub const LIGHTS: usize = 64;
+/// Most rays that sample one thing: a pixel, an occlusion.
+pub const SAMPLES: u32 = 1 << 20;
+/// Most pixels of a picture.
+pub const PIXELS: u64 = 1 << 32;
+
+/// Everything.
+pub(crate) fn parts(scene: &SceneParts) -> Check {
+    if scene.objects.len() > OBJECTS {
+        let fault = Fault::Objects {
+            given: scene.objects.len(),
+        };
+        return Err(SceneError::new(fault).at("objects"));
+    }
+    count_materials(scene.materials.len()).map_err(|e| e.at("materials"))?;
+    count_lights(scene.lights.len()).map_err(|e| e.at("lights"))?;
+    for (i, object) in scene.objects.iter().enumerate() {
+        let in_list = |e: SceneError| e.index(i).at("objects");
+        let count = scene.materials.len();
+        let exists = |number: u16| {
+            if usize::from(number) < count {
+                return Ok(());
+            }
+            Err(SceneError::new(Fault::Material { number, count }))
+        };
+        exists(object.material).map_err(|e| in_list(e.at("material")))?;
+        let facts = object.field.facts();
+        if let Some(highest) = facts.materials.checked_sub(1) {
+            exists(highest.min(u32::from(u16::MAX)) as u16).map_err(|e| in_list(e.at("field")))?;
+        }
+        if facts.dimension == Dimension::Two {
+            return Err(in_list(SceneError::new(Fault::Plane).at("field")));
+        }
+        let own = object.occlusion.as_ref();
+        own.map_or(Ok(()), |ao| occlusion(ao, SAMPLES))
+            .map_err(|e| in_list(e.at("ao")))?;
+    }
+    for (i, m) in scene.materials.iter().enumerate() {
+        let in_list = |e: SceneError| e.index(i).at("materials");
+        material(m).map_err(in_list)?;
+        if let Pattern::Triplanar { image: i, .. } = &m.pattern {
+            image(i).map_err(|e| in_list(e.at("image").at("pattern")))?;
+        }
+    }
+    for (i, l) in scene.lights.iter().enumerate() {
+        light(l).map_err(|e| e.index(i).at("lights"))?;
+    }
+    sky(&scene.sky).map_err(|e| e.at("sky"))?;
+    camera(&scene.camera).map_err(|e| e.at("camera"))?;
+    settings(&scene.settings, SAMPLES).map_err(|e| e.at("settings"))
+}
+
+/// Whether a scene may have this many materials: [`OBJECTS`] at most.
+///
+/// # Errors
+/// Too many.
+pub fn count_materials(given: usize) -> Check {
+    count_of("materials", given, OBJECTS)
+}
+
+/// Whether a scene may have this many lights: [`LIGHTS`] at most.
+///
+/// # Errors
+/// Too many.
+pub fn count_lights(given: usize) -> Check {
+    count_of("lights", given, LIGHTS)
+}
+
+fn count_of(what: &'static str, given: usize, most: usize) -> Check {
+    if given <= most {
+        return Ok(());
+    }
+    Err(SceneError::new(Fault::Many { what, given, most }))
+}
+
+/// Whether a picture may have this width and height: at least 1 pixel each, and [`PIXELS`] at most.
+///
+/// # Errors
+/// What the size is.
+pub fn size([width, height]: [u32; 2]) -> Check {
+    if width > 0 && height > 0 && u64::from(width) * u64::from(height) <= PIXELS {
+        return Ok(());
+    }
+    Err(SceneError::new(Fault::Size { width, height }))
+}
+
+/// Whether a camera sees: axes at right angles, a field of view of 1 to 170 degrees, `near` below `far`.
+///
+/// # Errors
+/// Which number is wrong.
+pub fn camera(camera: &Camera) -> Check {
+    vector("eye", camera.eye, f32::MAX)?;
+    let axes = camera.axes.as_dmat3();
+    let error = axes * axes.transpose() - glam::DMat3::IDENTITY;
+    // not a comparison that a number which is none would pass
+    let upright = (error.to_cols_array().iter()).all(|e| e.abs() <= UPRIGHT);
+    if !upright {
+        return Err(SceneError::new(Fault::Axes).at("axes"));
+    }
+    match camera.lens {
+        Lens::Pinhole { fov } => {
+            let degrees = crate::camera::degrees_of(fov);
+            if !(1.0..=170.0).contains(&degrees) {
+                return Err(SceneError::new(Fault::FieldOfView { degrees }).at("fov"));
+            }
+        }
+        Lens::Orthographic { height } => number("height", height, HEIGHT.0, HEIGHT.1)?,
+    }
+    number("near", camera.near, 0.0, f32::MAX)?;
+    number("far", camera.far, 0.0, f32::MAX)?;
+    if camera.near < camera.far {
+        return Ok(());
+    }
+    Err(SceneError::new(Fault::Range))
+}
+
+fn number(name: &'static str, value: f32, min: f32, max: f32) -> Check {
+    if (min..=max).contains(&value) {
+        return Ok(());
+    }
+    Err(SceneError::new(Fault::Number { value, min, max }).at(name))
+}
+
+fn count(name: &'static str, value: u32, min: u32, max: u32) -> Check {
+    if (min..=max).contains(&value) {
+        return Ok(());
+    }
+    Err(SceneError::new(Fault::Count { value, min, max }).at(name))
+}
+
+fn vector(name: &'static str, v: Vec3, max: f32) -> Check {
+    v.to_array()
+        .into_iter()
+        .try_for_each(|x| number(name, x, -max, max))
+}
+
+fn colour(name: &'static str, v: Vec3) -> Check {
+    v.to_array()
+        .into_iter()
+        .try_for_each(|x| number(name, x, 0.0, BRIGHT))
+}
+
+fn direction(name: &'static str, value: Vec3) -> Check {
+    if value.is_finite() && (value.length() - 1.0).abs() < 1e-3 {
+        return Ok(());
+    }
+    Err(SceneError::new(Fault::Direction { value }).at(name))
+}
+
+/// Whether a material's numbers are in their ranges. Its image, if it has one, is asked for on its own: see [`image`].
+///
+/// # Errors
+/// Which number is wrong.
+pub fn material(material: &Material) -> Check {
+    pattern(&material.pattern).map_err(|e| e.at("pattern"))?;
+    number("specular", material.specular, 0.0, 10.0)?;
+    number("shininess", material.shininess, 1.0, 1e4)?;
+    number("metallic", material.metallic, 0.0, 1.0)?;
+    number("roughness", material.roughness, 0.0, 1.0)?;
+    colour("emission", material.emission)
+}
+
+/// Whether an image has at least a pixel, and as many as its width and height say. Their values are not looked at.
+///
+/// # Errors
+/// What it has.
+pub fn image(image: &Image) -> Check {
+    let (width, height, pixels) = (image.width, image.height, image.pixels.len());
+    if width > 0 && height > 0 && u64::from(width) * u64::from(height) == pixels as u64 {
+        return Ok(());
+    }
+    Err(SceneError::new(Fault::Image {
+        width,
+        height,
+        pixels,
+    }))
+}
+
+fn pattern(pattern: &Pattern) -> Check {
+    let colours = |list: &[Vec3]| list.iter().try_for_each(|c| colour("colours", *c));
+    let scale = |x: f32| number("size", x, SMALL as f32, LARGE as f32);
+    match pattern {
+        Pattern::Solid { colour: c } => colour("colour", *c),
+        Pattern::Checker { colours: c, size } => colours(c).and_then(|()| scale(*size)),
+        Pattern::Stripes {
+            colours: c,
+            direction: d,
+            size,
+        } => {
+            colours(c)?;
+            direction("direction", *d)?;
+            scale(*size)
+        }
+        Pattern::Noise {
+            colours: c,
+            size,
+            octaves,
+        } => {
+            colours(c)?;
+            scale(*size)?;
+            count("octaves", *octaves, 1, 8)
+        }
+        Pattern::Gradient {
+            colours: c,
+            from,
+            to,
+        } => {
+            colours(c)?;
+            vector("from", *from, FAR)?;
+            vector("to", *to, FAR)?;
+            if from == to {
+                Err(SceneError::new(Fault::Points))
+            } else {
+                Ok(())
+            }
+        }
+        Pattern::Triplanar {
+            size, sharpness, ..
+        } => {
+            scale(*size)?;
+            number("sharpness", *sharpness, 1.0, 64.0)
+        }
+        Pattern::Orbit { colours: c } => colours(c),
+    }
+}
+
+/// Whether a light's numbers are in their ranges: a direction of length 1, no negative light.
+///
+/// # Errors
+/// Which number is wrong.
+pub fn light(light: &Light) -> Check {
+    match light.source {
+        Source::Directional { direction: d } => {
+            direction("direction", d).map_err(|e| e.at("source"))?
+        }
+        Source::Point { position } => {
+            vector("position", position, FAR).map_err(|e| e.at("source"))?
+        }
+    }
+    colour("radiance", light.radiance)?;
+    shadow(&light.shadow).map_err(|e| e.at("shadow"))
+}
+
+/// Whether a sky's numbers are in their ranges: no negative light, `ambient` 0 to 10.
+///
+/// # Errors
+/// Which number is wrong.
+pub fn sky(sky: &Sky) -> Check {
+    colour("top", sky.top)?;
+    colour("horizon", sky.horizon)?;
+    colour("bottom", sky.bottom)?;
+    number("ambient", sky.ambient, 0.0, 10.0)
+}
+
+/// Whether settings are in their ranges, with `samples` rays (and [`SAMPLES`]) at most where something is sampled.
+///
+/// # Errors
+/// Which number is wrong.
+pub fn settings(settings: &Settings, samples: u32) -> Check {
+    size(settings.size).map_err(|e| e.at("size"))?;
+    march(&settings.march).map_err(|e| e.at("march"))?;
+    count("max_steps", settings.max_steps, 1, 100_000)?;
+    count(
+        "discontinuity_reduction",
+        settings.discontinuity_reduction,
+        0,
+        16,
+    )?;
+    number("footprint", settings.footprint, 1e-3, 4.0)?;
+    number("exposure", settings.exposure, -20.0, 20.0)?;
+    occlusion(&settings.occlusion, samples).map_err(|e| e.at("occlusion"))?;
+    antialias(&settings.antialias, samples).map_err(|e| e.at("antialias"))
+}
