@@ -6,6 +6,7 @@ pub mod colour;
 pub mod film;
 pub mod light;
 pub mod material;
+pub mod methods;
 pub mod render;
 pub mod scene;
 pub mod settings;

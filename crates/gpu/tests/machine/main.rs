@@ -7,6 +7,7 @@ use std::sync::Mutex;
 use zeroset_gpu::Job;
 use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::render::Observer;
+use zeroset_scene::settings::Filter;
 use zeroset_shader::layout::{Frame, LightSum, Sample, Shared, SurfaceSum, Tile};
 
 /// A job whose pictures are known: see `toy.wgsl`. `work` makes each ray dearer.
@@ -22,7 +23,7 @@ fn toy(size: [u32; 2], samples: u32, work: f32) -> Job {
     let frame = Frame {
         size,
         samples,
-        filter_kind: 2,
+        filter_kind: Filter::Mitchell as u32,
         prepass: 1,
         ..Frame::default()
     };

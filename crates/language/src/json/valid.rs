@@ -9,8 +9,9 @@ use zeroset_catalogue::{LARGE, SMALL};
 use zeroset_scene::camera::{Camera, Lens};
 use zeroset_scene::light::{Light, Sky, Source};
 use zeroset_scene::material::{Material, Pattern};
+use zeroset_scene::methods::{self, Choice, Param};
 use zeroset_scene::scene::Scene;
-use zeroset_scene::settings::{Antialias, March, Occlusion, Settings, Shadow};
+use zeroset_scene::settings::{Occlusion, Settings};
 
 /// Largest coordinate of a light or a gradient.
 const FAR: f32 = 1e12;
@@ -213,12 +214,8 @@ pub(super) fn light(light: &Light) -> Read<()> {
         }
     }
     colour("radiance", light.radiance)?;
-    match light.shadow {
-        Shadow::None | Shadow::Hard => Ok(()),
-        Shadow::Soft { sharpness } | Shadow::SoftClosest { sharpness } => {
-            number("sharpness", sharpness, 1.0, 1000.0).map_err(|p| p.at("shadow"))
-        }
-    }
+    // a shadow takes no samples
+    method(&light.shadow, u64::MAX).map_err(|p| p.at("shadow"))
 }
 
 pub(super) fn sky(sky: &Sky) -> Read<()> {
@@ -229,80 +226,28 @@ pub(super) fn sky(sky: &Sky) -> Read<()> {
 }
 
 pub(super) fn occlusion(occlusion: &Occlusion, limits: &Limits) -> Read<()> {
-    let most = limits.samples.min(1 << 20) as u32;
-    let length = |name: &str, x: f32| number(name, x, SMALL as f32, LARGE as f32);
-    let far = |reach: Option<f32>| reach.map_or(Ok(()), |x| length("reach", x));
-    let strength = |x: f32| number("scale", x, 0.0, 1000.0);
-    let bend = |x: f32| number("bend", x, 0.0, 10.0);
-    match *occlusion {
-        Occlusion::None => Ok(()),
-        Occlusion::Quilez { steps, step, scale } => {
-            count("steps", steps, 1, most)?;
-            length("step", step)?;
-            strength(scale)
-        }
-        Occlusion::Bent {
-            steps,
-            step,
-            scale,
-            bend: b,
-        } => {
-            count("steps", steps, 1, most)?;
-            length("step", step)?;
-            strength(scale)?;
-            bend(b)
-        }
-        Occlusion::Evans {
-            scale,
-            step,
-            bend: b,
-        } => {
-            strength(scale)?;
-            length("step", step)?;
-            bend(b)
-        }
-        Occlusion::Upward { scale } => strength(scale),
-        Occlusion::Cones { reach, steps } => {
-            far(reach)?;
-            count("steps", steps, 1, most)
-        }
-        Occlusion::Hemisphere { rays, reach } => {
-            count("rays", rays, 1, most)?;
-            far(reach)
-        }
-        Occlusion::Obscurance { rays, reach, tau } => {
-            count("rays", rays, 1, most)?;
-            far(reach)?;
-            number("tau", tau, 1e-3, 1000.0)
-        }
-    }
+    method(occlusion, limits.samples)
+}
+
+/// Whether the numbers of a method are what the registry allows, and its samples at most so many.
+fn method<T: Choice>(chosen: &T, samples: u64) -> Read<()> {
+    (chosen.check(samples)).map_err(|(param, refused)| problem(format!("this {refused}")).at(param))
+}
+
+/// Whether a number of the settings is what is allowed.
+fn setting(param: Param, value: methods::Value) -> Read<()> {
+    (param.check(value)).map_err(|refused| problem(format!("this {refused}")).at(param.name))
 }
 
 pub(super) fn settings(settings: &Settings, limits: &Limits) -> Read<()> {
+    use methods::Value::{Real, Whole};
     check_size(settings.size, limits).map_err(|m| problem(m).at("size"))?;
-    let march = match settings.march {
-        March::Fixed { step } => number("step", step, SMALL as f32, LARGE as f32),
-        March::Sphere => Ok(()),
-        March::Relaxed { omega } => number("omega", omega, 1.0, 1.99),
-        March::Enhanced { share } => number("share", share, 0.1, 1.0),
-        March::Auto { beta } => number("beta", beta, 0.01, 1.0),
-    };
-    march.map_err(|p| p.at("march"))?;
-    count("max_steps", settings.max_steps, 1, 100_000)?;
-    count(
-        "discontinuity_reduction",
-        settings.discontinuity_reduction,
-        0,
-        16,
-    )?;
-    number("footprint", settings.footprint, 1e-3, 4.0)?;
-    number("exposure", settings.exposure, -20.0, 20.0)?;
+    method(&settings.march, limits.samples).map_err(|p| p.at("march"))?;
+    setting(Settings::MAX_STEPS, Whole(settings.max_steps))?;
+    let reduction = Whole(settings.discontinuity_reduction);
+    setting(Settings::DISCONTINUITY_REDUCTION, reduction)?;
+    setting(Settings::FOOTPRINT, Real(settings.footprint))?;
+    setting(Settings::EXPOSURE, Real(settings.exposure))?;
     occlusion(&settings.occlusion, limits).map_err(|p| p.at("occlusion"))?;
-    match settings.antialias {
-        Antialias::None => Ok(()),
-        Antialias::Supersample { samples, .. } => {
-            count("samples", samples, 1, limits.samples.min(1 << 20) as u32)
-                .map_err(|p| p.at("antialias"))
-        }
-    }
+    method(&settings.antialias, limits.samples).map_err(|p| p.at("antialias"))
 }
