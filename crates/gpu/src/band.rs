@@ -142,13 +142,14 @@ impl Room {
 mod tests {
     use super::*;
     use std::sync::Arc;
+    use zeroset_scene::settings::Filter;
     use zeroset_shader::Turns;
 
-    fn job(size: [u32; 2], filter_kind: u32) -> Job {
+    fn job(size: [u32; 2], filter: Filter) -> Job {
         let frame = Frame {
             size,
             samples: 4,
-            filter_kind,
+            filter_kind: filter as u32,
             prepass: 1,
             ..Frame::default()
         };
@@ -172,7 +173,7 @@ mod tests {
                 (8 << 20, 128 << 20),
                 (4 << 20, 1 << 20),
             ] {
-                let job = job(size, 2);
+                let job = job(size, Filter::Mitchell);
                 let (room, mut first, mut bands) = (
                     Room {
                         budget,
@@ -215,7 +216,7 @@ mod tests {
             rows: 100,
             notes: 0,
         };
-        let error = room.band(&job([1 << 20, 4], 0), 0, &Sum::ALL, "card");
+        let error = room.band(&job([1 << 20, 4], Filter::Box), 0, &Sum::ALL, "card");
         assert!(matches!(error, Err(GpuError::TooLarge { .. })), "{error:?}");
     }
 
@@ -227,7 +228,13 @@ mod tests {
             rows: 48,
             notes: 0,
         };
-        assert_eq!(room.band(&job([64, 100], 1), 0, &Sum::ALL, "a"), Ok(48));
-        assert_eq!(room.band(&job([64, 100], 1), 96, &Sum::ALL, "a"), Ok(4));
+        assert_eq!(
+            room.band(&job([64, 100], Filter::Tent), 0, &Sum::ALL, "a"),
+            Ok(48)
+        );
+        assert_eq!(
+            room.band(&job([64, 100], Filter::Tent), 96, &Sum::ALL, "a"),
+            Ok(4)
+        );
     }
 }

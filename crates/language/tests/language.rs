@@ -1,7 +1,11 @@
 //! The language: what scene files may say and what comes out.
 
 use zeroset_field::field::{Field, Node};
+use zeroset_language::json::{expand, to_text};
 use zeroset_language::load::{Control, Failed, Language, Loaded, Options, Setting, load_text};
+use zeroset_scene::methods::Choice;
+use zeroset_scene::scene::Scene;
+use zeroset_scene::settings::{Antialias, Filter, March, Normals, Occlusion, Shading, Shadow};
 
 fn try_load(text: &str, options: &Options) -> Result<Loaded, Failed> {
     load_text("scene.star", text, Language::Starlark, None, options)
@@ -417,4 +421,59 @@ fn painted_parts() {
     );
     // red, blue and the object's own
     assert_eq!(loaded.scene.materials().len(), 3);
+}
+
+/// Every method of the registry, as a script writes it, is that method; as JSON too.
+#[test]
+fn every_method_can_be_written() {
+    fn each<T: Choice>(write: fn(&str) -> String, found: fn(&Scene) -> T) {
+        for (base, method) in T::all().iter().zip(T::METHODS) {
+            let is_called = T::METHODS.iter().any(|m| !m.params.is_empty());
+            let written = match is_called {
+                true => format!("{}()", method.word),
+                false => format!("\"{}\"", method.name),
+            };
+            let loaded = scene(&write(&written));
+            assert_eq!(found(&loaded.scene), *base, "{written}");
+            let json = to_text(&expand(&loaded.scene).expect("JSON"));
+            let again = load_text("a.json", &json, Language::Json, None, &Options::default());
+            let again = again.unwrap_or_else(|e| panic!("{}", e.report));
+            assert_eq!(found(&again.scene), *base, "{json}");
+        }
+    }
+    each::<March>(
+        |m| format!("show(sphere())\nrender(march = {m})"),
+        |s| s.settings.march,
+    );
+    each::<Normals>(
+        |m| format!("show(sphere())\nrender(normals = {m})"),
+        |s| s.settings.normals,
+    );
+    each::<Occlusion>(
+        |m| format!("show(sphere(), ao = {m})"),
+        |s| s.objects[0].occlusion.expect("its own"),
+    );
+    each::<Occlusion>(
+        |m| format!("show(sphere())\nrender(ao = {m})"),
+        |s| s.settings.occlusion,
+    );
+    each::<Antialias>(
+        |m| format!("show(sphere())\nrender(aa = {m})"),
+        |s| s.settings.antialias,
+    );
+    each::<Shading>(
+        |m| format!("show(sphere())\nrender(shading = {m})"),
+        |s| s.settings.shading,
+    );
+    each::<Shadow>(
+        |m| format!("show(sphere())\nsun(shadow = {m})"),
+        |s| s.lights[0].shadow,
+    );
+    each::<Filter>(
+        |m| format!("show(sphere())\nrender(aa = supersample(filter = {m}))"),
+        |s| match s.settings.antialias {
+            Antialias::Supersample { filter, .. } => filter,
+            Antialias::None => panic!("no filter"),
+        },
+    );
 }

@@ -1,66 +1,52 @@
 //! The film: linear-light planes that a renderer fills. Debug views are planes of the film.
 
-/// One plane of the film.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Plane {
-    /// Linear colour, 3 channels.
-    Colour,
-    /// Share of the pixel that is covered by a surface.
-    Coverage,
-    /// Distance along the ray, scene units; infinite where nothing is hit.
-    Depth,
-    /// Unit normal, 3 channels; zero where nothing is hit.
-    Normal,
-    /// Linear colour of the surface, 3 channels.
-    Albedo,
-    /// Ambient visibility: 1 open, 0 closed.
-    Occlusion,
-    /// Visibility of the lights, weighted by their share: 1 lit, 0 in shadow.
-    Shadow,
-    /// Evaluations of the field that the primary ray took.
-    Steps,
-    /// |f| at the hit.
-    Residual,
-    /// Number of the object plus 1; 0 where nothing is hit.
-    Object,
+use crate::methods::{Choice, choice};
+use serde::{Deserialize, Serialize};
+
+choice! {
+    /// One plane of the film, and its view.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+    pub enum Plane("view", "a view", "Views") {
+        /// What a camera would see: linear colour, 3 channels.
+        Colour("colour", "Picture", "3 channels"),
+        /// Share of the pixel that is covered by a surface.
+        Coverage("coverage", "Coverage", "1 channel"),
+        /// Distance along the ray, scene units; infinite where nothing is hit.
+        Depth("depth", "Depth", "1 channel"),
+        /// Which way the surface faces: a unit normal, zero where nothing is hit.
+        Normal("normal", "Normals", "3 channels"),
+        /// Linear colour of the material.
+        Albedo("albedo", "Albedo", "3 channels"),
+        /// Ambient visibility: 1 open, 0 closed.
+        Occlusion("occlusion", "Ambient occlusion", "Tomczak 2012, fig. 3.11"),
+        /// Visibility of the lights, weighted by their share: 1 lit, 0 in shadow.
+        Shadow("shadow", "Shadow", "1 channel"),
+        /// Evaluations of the field that the primary ray took.
+        Steps("steps", "Steps", "Munini 2021, fig. 12; Keinert et al. 2014, fig. 9"),
+        /// How far from zero the field is at the hit.
+        Residual("residual", "Residual", "Keinert et al. 2014, fig. 7"),
+        /// Number of the object plus 1; 0 where nothing is hit.
+        Object("object", "Objects", "1 channel"),
+    }
 }
 
 impl Plane {
-    /// All planes, in the order of the film.
-    pub const ALL: [Plane; 10] = [
-        Plane::Colour,
-        Plane::Coverage,
-        Plane::Depth,
-        Plane::Normal,
-        Plane::Albedo,
-        Plane::Occlusion,
-        Plane::Shadow,
-        Plane::Steps,
-        Plane::Residual,
-        Plane::Object,
-    ];
-
     /// Name on the command line and of the layer in a file.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Plane::Colour => "colour",
-            Plane::Coverage => "coverage",
-            Plane::Depth => "depth",
-            Plane::Normal => "normal",
-            Plane::Albedo => "albedo",
-            Plane::Occlusion => "occlusion",
-            Plane::Shadow => "shadow",
-            Plane::Steps => "steps",
-            Plane::Residual => "residual",
-            Plane::Object => "object",
-        }
+    pub fn name(self) -> &'static str {
+        self.method().name
     }
 
     /// Numbers a pixel.
     pub const fn channels(self) -> usize {
         match self {
             Plane::Colour | Plane::Normal | Plane::Albedo => 3,
-            _ => 1,
+            Plane::Coverage
+            | Plane::Depth
+            | Plane::Occlusion
+            | Plane::Shadow
+            | Plane::Steps
+            | Plane::Residual
+            | Plane::Object => 1,
         }
     }
 }

@@ -8,6 +8,7 @@ pub mod fallback;
 pub mod film;
 pub mod light;
 pub mod material;
+pub mod methods;
 pub mod render;
 pub mod scene;
 pub mod settings;

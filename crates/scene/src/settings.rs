@@ -1,180 +1,216 @@
 //! How a scene is rendered: every method of the papers is a choice here, the default is the best one.
 
+use crate::methods::{Allowed, Kind, LENGTH, Limit, Param, SAMPLES, Unit, Value, choice};
 use serde::{Deserialize, Serialize};
 
-/// How a ray finds the surface.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "method", rename_all = "snake_case", deny_unknown_fields)]
-pub enum March {
-    /// Constant steps, then bisection of the sign change (Tomczak 2012, 2.1; Munini 2021, 3.2).
-    Fixed {
-        /// Step, in scene units.
-        step: f32,
-    },
-    /// Steps of the field's value (Hart 1996; Tomczak 2012, 2.2).
-    Sphere,
-    /// Over-relaxation (Keinert 2014, 3.1 and listing 2).
-    Relaxed {
-        /// Factor on every step, 1 to less than 2.
-        omega: f32,
-    },
-    /// Steps from the planar guess (Balint and Valasek 2018).
-    Enhanced {
-        /// Share of the guess that is taken, about 0.88 to 0.95.
-        share: f32,
-    },
-    /// Over-relaxation from the slope of the field along the ray (Ban and Valasek 2023).
-    Auto {
-        /// Smoothing of the slope, 0 to 1.
-        beta: f32,
-    },
+choice! {
+    /// How a ray finds the surface.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(tag = "method", deny_unknown_fields)]
+    pub enum March("march", "a marching method", "Marching") {
+        /// Longer steps, taken from the slope of the field along the ray.
+        Auto("auto", "Auto", "Bán and Valasek 2023") {
+            /// How fast the slope is followed: 1 takes that of the last step alone.
+            beta: f32 = 0.3, Param::new("Beta", Unit::Ratio, Allowed::above(0.0, 1.0)).usual(0.01, 1.0)
+        },
+        /// Steps as far as they would go if the surface were flat.
+        Enhanced("enhanced", "Enhanced", "Bálint and Valasek 2018") {
+            /// How much of the planar guess is taken; at 1 rounding decides whether a flat face is passed.
+            share: f32 = 0.9, Param::new("Share", Unit::Ratio, Allowed::below(0.0, 1.0)).usual(0.1, 0.99)
+        },
+        /// Steps longer by a factor, taken back where they went too far.
+        Relaxed("relaxed", "Over-relaxation", "Keinert et al. 2014, 3.1 and listing 2") {
+            /// The factor on every step; spheres that are 2 radii apart do not overlap.
+            omega: f32 = 1.2, Param::new("Omega", Unit::Ratio, Allowed::below(1.0, 2.0)).usual(1.0, 1.99)
+        },
+        /// Steps of the field's value: never beyond the nearest surface.
+        Sphere("sphere" as "sphere_tracing", "Sphere tracing", "Hart 1996; Tomczak 2012, 2.2"),
+        /// Equal steps, then bisection where the sign changes.
+        Fixed("fixed", "Fixed steps", "Tomczak 2012, 2.1; Munini 2021, 3.2") {
+            /// Length of a step.
+            step: f32 = 0.02, Param::new("Step", Unit::Length, LENGTH).usual(0.001, 0.5).logarithmic()
+        },
+    }
 }
 
-/// How the normal of a hit is found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Normals {
-    /// Four samples at the corners of a tetrahedron.
-    Tetrahedron,
-    /// Six samples, central differences (Tomczak 2012, 3.1).
-    Central,
-    /// 18 samples (Tomczak 2012, 3.1).
-    Samples18,
-    /// 26 samples (Tomczak 2012, 3.1).
-    Samples26,
-    /// Dual numbers: the exact gradient. The default: in SIMD it costs less than four samples, and samples on both sides of a
-    /// crease blend its normals to one that is lit more than either.
-    #[default]
-    Exact,
+choice! {
+    /// How the normal of a hit is found.
+    ///
+    /// The exact gradient is the default: in SIMD it costs less than four samples, and samples on both sides of a crease
+    /// blend its normals to one that is lit more than either.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+    pub enum Normals("normals", "a way to find normals", "Normals") {
+        /// The derivative of the field itself, without samples beside the point.
+        Exact("exact", "Exact gradient", "dual numbers"),
+        /// Differences between the corners of a tetrahedron.
+        Tetrahedron("tetrahedron", "Tetrahedron", "4 samples"),
+        /// Differences along the three axes.
+        Central("central", "Central differences", "Tomczak 2012, 3.1; 6 samples"),
+        /// Differences along axes and face diagonals: smooths creases.
+        Samples18("samples18", "18 samples", "Tomczak 2012, 3.1"),
+        /// Differences to all neighbours of a cube: smooths creases more.
+        Samples26("samples26", "26 samples", "Tomczak 2012, 3.1"),
+    }
 }
 
-/// How a shadow is found.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "method", rename_all = "snake_case", deny_unknown_fields)]
-pub enum Shadow {
-    /// No shadow.
-    None,
-    /// Lit or not (Tomczak 2012, 3.2).
-    Hard,
-    /// `min(sharpness * d / t)` (Tomczak 2012, 3.3).
-    Soft {
-        /// Larger is sharper; about 2 to 128.
-        sharpness: f32,
-    },
-    /// The closest approach between two samples (Aaltonen 2018).
-    SoftClosest {
-        /// Larger is sharper; about 2 to 128.
-        sharpness: f32,
-    },
+/// How sharp a penumbra is.
+const SHARPNESS: Param = Param::new("Sharpness", Unit::Ratio, Allowed::between(1.0, 1000.0))
+    .usual(1.0, 128.0)
+    .logarithmic();
+
+choice! {
+    /// How a shadow is found.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(tag = "method", deny_unknown_fields)]
+    pub enum Shadow("shadow", "a shadow", "Shadows") {
+        /// A penumbra from how near the ray came between two samples: no bands.
+        SoftClosest("soft_closest", "Soft, closest approach", "Aaltonen 2018") {
+            /// Larger is sharper: distance over way is multiplied by it.
+            sharpness: f32 = 16.0, SHARPNESS
+        },
+        /// A penumbra from the smallest ratio of distance and way.
+        Soft("soft", "Soft", "Quílez 2010; Tomczak 2012, 3.3") {
+            /// Larger is sharper: distance over way is multiplied by it.
+            sharpness: f32 = 16.0, SHARPNESS
+        },
+        /// Lit or not: one ray towards the light.
+        Hard("hard", "Hard", "Tomczak 2012, 3.2"),
+        /// Every surface that faces a light is lit.
+        None("none", "None", "no rays"),
+    }
 }
 
-/// How ambient occlusion is found. Lengths are scene units.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "method", rename_all = "snake_case", deny_unknown_fields)]
-pub enum Occlusion {
-    /// No occlusion.
-    None,
-    /// Samples along the normal with halving weights (Tomczak 2012, algorithm 3.4 and equation 3.31).
-    Quilez {
-        /// Number of samples.
-        steps: u32,
-        /// Distance between samples.
-        step: f32,
-        /// Strength.
-        scale: f32,
-    },
-    /// Samples along a way that bends towards `up` (Tomczak 2012, algorithm 3.7).
-    Bent {
-        /// Number of samples.
-        steps: u32,
-        /// Distance between samples.
-        step: f32,
-        /// Strength.
-        scale: f32,
-        /// How far the way bends at each sample.
-        bend: f32,
-    },
-    /// Exponential of weighted samples at doubling distances (Evans 2006, 9.6; Tomczak 2012, equation 3.26).
-    Evans {
-        /// Strength.
-        scale: f32,
-        /// First distance above zero.
-        step: f32,
-        /// How far the normal bends towards the sky.
-        bend: f32,
-    },
-    /// From the slope of the surface alone (Tomczak 2012, 4.3).
-    Upward {
-        /// Strength.
-        scale: f32,
-    },
-    /// Eleven cones, each as open as the field leaves its axis clear (the default).
-    Cones {
-        /// How far they look; to the end of the scene where it is not given.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        reach: Option<f32>,
-        /// Samples along a cone, at most.
-        steps: u32,
-    },
-    /// Cosine-weighted sampled visibility: the reference (Tomczak 2012, equation 3.18).
-    Hemisphere {
-        /// Number of rays.
-        rays: u32,
-        /// How far they look; to the end of the scene where it is not given.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        reach: Option<f32>,
-    },
-    /// As `hemisphere`, with near occluders counting more: `1 - exp(-tau d)` (Tomczak 2012, equations 3.19 to 3.24).
-    Obscurance {
-        /// Number of rays.
-        rays: u32,
-        /// How far they look; to the end of the scene where it is not given.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        reach: Option<f32>,
-        /// Falloff over distance, > 0.
-        tau: f32,
-    },
+/// Samples along a way.
+const STEPS: Param = Param::new("Samples", Unit::Count, SAMPLES).usual(1.0, 32.0);
+/// Distance between samples.
+const STEP: Param = Param::new("Step", Unit::Length, LENGTH)
+    .usual(0.005, 2.0)
+    .logarithmic();
+/// What a sum of lengths is multiplied by.
+const SCALE: Param =
+    Param::new("Strength", Unit::PerLength, Allowed::between(0.0, 1000.0)).usual(0.0, 4.0);
+/// What is added of the way up.
+const BEND: Param = Param::new("Bend", Unit::Ratio, Allowed::between(0.0, 10.0)).usual(0.0, 2.0);
+/// How far occlusion looks.
+const REACH: Param = Param::new("Reach", Unit::Length, LENGTH)
+    .usual(0.001, 1000.0)
+    .logarithmic();
+/// Rays over the hemisphere.
+const RAYS: Param = Param::new("Rays", Unit::Count, SAMPLES)
+    .usual(1.0, 1024.0)
+    .logarithmic();
+
+choice! {
+    /// How ambient occlusion is found.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(tag = "method", deny_unknown_fields)]
+    pub enum Occlusion("ao", "an occlusion method", "Ambient occlusion") {
+        /// Eleven cones, each as open as the field leaves its axis clear.
+        Cones("cones", "Cones", "distance field occlusion, 11 cones") {
+            /// How far they look; unlimited, to the end of the scene.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            reach: Limit = None, REACH;
+            /// Samples along a cone, at most.
+            steps: u32 = 14, STEPS
+        },
+        /// Samples along the normal with halving weights.
+        Quilez("quilez", "Quilez", "Tomczak 2012, algorithm 3.4 and equation 3.31") {
+            /// Number of samples.
+            steps: u32 = 5, STEPS;
+            /// Distance between samples.
+            step: f32 = 0.1, STEP;
+            /// How dark closed places become.
+            scale: f32 = 1.0, SCALE
+        },
+        /// Samples along a way that bends upwards.
+        Bent("bent", "Bent", "Tomczak 2012, algorithm 3.7") {
+            /// Number of samples.
+            steps: u32 = 5, STEPS;
+            /// Distance between samples.
+            step: f32 = 0.1, STEP;
+            /// How dark closed places become.
+            scale: f32 = 0.5, SCALE;
+            /// How far the way bends at each sample.
+            bend: f32 = 0.2, BEND
+        },
+        /// Weighted samples at doubling distances, under an exponential.
+        Evans("evans", "Evans", "Evans 2006, 9.6; Tomczak 2012, equation 3.26") {
+            /// How dark closed places become.
+            scale: f32 = 1.0, SCALE;
+            /// First distance above zero.
+            step: f32 = 0.1, STEP;
+            /// How far the normal bends towards the sky.
+            bend: f32 = 0.5, BEND
+        },
+        /// From the slope of the surface alone.
+        Upward("upward", "Upward", "Tomczak 2012, 4.3") {
+            /// How dark surfaces that face down become.
+            scale: f32 = 0.5, Param { unit: Unit::Ratio, ..SCALE }
+        },
+        /// Sampled visibility of the hemisphere, weighted by the cosine: the reference.
+        Hemisphere("hemisphere", "Hemisphere", "Tomczak 2012, equation 3.18") {
+            /// Number of rays.
+            rays: u32 = 64, RAYS;
+            /// How far they look; unlimited, to the end of the scene.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            reach: Limit = None, REACH
+        },
+        /// As hemisphere, near things counting more: `1 - exp(-tau d)`.
+        Obscurance("obscurance", "Obscurance", "Iones 2003; Tomczak 2012, equations 3.19 to 3.24") {
+            /// Number of rays.
+            rays: u32 = 64, RAYS;
+            /// How far they look; unlimited, to the end of the scene.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            reach: Limit = None, REACH;
+            /// Falloff over distance.
+            tau: f32 = 2.0, Param::new("Tau", Unit::PerLength, Allowed::above(0.0, 1000.0)).usual(0.05, 50.0).logarithmic()
+        },
+        /// The sky reaches every surface.
+        None("none", "None", "no samples"),
+    }
 }
 
-/// Shape of a pixel's filter.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Filter {
-    /// One pixel wide, constant.
-    Box,
-    /// Two pixels wide, linear.
-    Tent,
-    /// Four pixels wide, B = C = 1/3 (Mitchell and Netravali 1988).
-    #[default]
-    Mitchell,
+choice! {
+    /// Shape of a pixel's filter.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+    pub enum Filter("filter", "a filter", "Filters") {
+        /// Four pixels wide, B = C = 1/3: sharp, with little ringing.
+        Mitchell("mitchell", "Mitchell", "Mitchell and Netravali 1988"),
+        /// Falls off evenly: a little soft.
+        Tent("tent", "Tent", "two pixels wide"),
+        /// Every ray of the pixel counts alike.
+        Box("box", "Box", "one pixel wide"),
+    }
 }
 
-/// How edges are smoothed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "method", rename_all = "snake_case", deny_unknown_fields)]
-pub enum Antialias {
-    /// One ray through the middle of each pixel.
-    None,
-    /// Several jittered rays a pixel.
-    Supersample {
-        /// Rays a pixel.
-        samples: u32,
-        /// How they are weighted.
-        filter: Filter,
-    },
+choice! {
+    /// How edges are smoothed.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(tag = "method", deny_unknown_fields)]
+    pub enum Antialias("aa", "an antialiasing method", "Antialiasing") {
+        /// Jittered rays, weighted by a filter.
+        Supersample("supersample", "Supersampling", "several rays a pixel") {
+            /// Rays a pixel.
+            samples: u32 = 4, Param::new("Rays a pixel", Unit::Count, SAMPLES).usual(1.0, 256.0).logarithmic();
+            /// How they are weighted.
+            filter: Filter = Filter::Mitchell, Param::new("Filter", Unit::Count, Allowed::between(0.0, 0.0))
+        },
+        /// One ray through the middle of each pixel.
+        None("none", "None", "one ray a pixel"),
+    }
 }
 
-/// Which light model turns a hit into a colour.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Shading {
-    /// Ambient, diffuse and Blinn's specular term with `facing` (Tomczak 2012, equations 3.1 to 3.5).
-    #[default]
-    Phong,
-    /// Lambert's cosine law, albedo / pi, with inverse squares for point lights (Munini 2021, 3.3).
-    Lambert,
-    /// `(n . l) colour / (4 pi)` without falloff, as printed in Munini 2021, 3.3.
-    LambertLegacy,
+choice! {
+    /// Which light model turns a hit into a colour.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+    pub enum Shading("shading", "a light model", "Shading") {
+        /// Ambient, diffuse and Blinn's highlight, none where the light is behind the surface.
+        Phong("phong", "Phong", "Tomczak 2012, equations 3.1 to 3.5"),
+        /// The cosine law, albedo over pi, point lights with inverse squares.
+        Lambert("lambert", "Lambert", "Munini 2021, 3.3"),
+        /// `(n . l) colour / (4 pi)`, without falloff.
+        LambertLegacy("lambert_legacy", "Lambert as printed", "Munini 2021, 3.3"),
+    }
 }
 
 /// All choices of a rendering.
@@ -209,28 +245,65 @@ pub struct Settings {
     pub exposure: f32,
 }
 
+impl Settings {
+    /// The settings of a scene that states none.
+    pub const DEFAULT: Settings = Settings {
+        size: [512, 512],
+        march: March::ALL[0],
+        prepass: true,
+        max_steps: 256,
+        hit_selection: true,
+        discontinuity_reduction: 0,
+        footprint: 0.5,
+        normals: Normals::ALL[0],
+        shading: Shading::ALL[0],
+        occlusion: Occlusion::ALL[0],
+        antialias: Antialias::ALL[0],
+        seed: 0,
+        exposure: 0.0,
+    };
+
+    /// [`Settings::max_steps`] as a parameter.
+    pub const MAX_STEPS: Param = Param {
+        name: "max_steps",
+        doc: "Most steps of a ray.",
+        kind: Kind::Whole,
+        default: Value::Whole(Settings::DEFAULT.max_steps),
+        ..Param::new("Most steps", Unit::Count, Allowed::between(1.0, 1e5))
+            .usual(1.0, 2048.0)
+            .logarithmic()
+    };
+
+    /// [`Settings::discontinuity_reduction`] as a parameter.
+    pub const DISCONTINUITY_REDUCTION: Param = Param {
+        name: "discontinuity_reduction",
+        doc: "Steps that put a hit where its pixel meets the surface (Keinert et al. 2014, 3.4).",
+        kind: Kind::Whole,
+        default: Value::Whole(Settings::DEFAULT.discontinuity_reduction),
+        ..Param::new("Hit repair", Unit::Count, Allowed::between(0.0, 16.0)).usual(0.0, 8.0)
+    };
+
+    /// [`Settings::footprint`] as a parameter.
+    pub const FOOTPRINT: Param = Param {
+        name: "footprint",
+        doc: "A hit is nearer to the surface than so many pixel widths.",
+        default: Value::Real(Settings::DEFAULT.footprint),
+        ..Param::new("Hit within", Unit::Pixels, Allowed::between(1e-3, 4.0))
+            .usual(0.05, 4.0)
+            .logarithmic()
+    };
+
+    /// [`Settings::exposure`] as a parameter.
+    pub const EXPOSURE: Param = Param {
+        name: "exposure",
+        doc: "Stops brighter or darker.",
+        default: Value::Real(Settings::DEFAULT.exposure),
+        ..Param::new("Exposure", Unit::Stops, Allowed::between(-20.0, 20.0)).usual(-6.0, 6.0)
+    };
+}
+
 impl Default for Settings {
     fn default() -> Self {
-        Settings {
-            size: [512, 512],
-            march: March::Auto { beta: 0.3 },
-            prepass: true,
-            max_steps: 256,
-            hit_selection: true,
-            discontinuity_reduction: 0,
-            footprint: 0.5,
-            normals: Normals::Exact,
-            shading: Shading::Phong,
-            occlusion: Occlusion::Cones {
-                reach: None,
-                steps: 14,
-            },
-            antialias: Antialias::Supersample {
-                samples: 4,
-                filter: Filter::Mitchell,
-            },
-            seed: 0,
-            exposure: 0.0,
-        }
+        Settings::DEFAULT
     }
 }

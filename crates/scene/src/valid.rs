@@ -10,9 +10,11 @@ pub use methods::{antialias, march, occlusion, shadow};
 use crate::camera::{Camera, Lens};
 use crate::light::{Light, Sky, Source};
 use crate::material::{Image, Material, Pattern};
+use crate::methods::Value::{Real, Whole};
 use crate::scene::SceneParts;
 use crate::settings::Settings;
 use glam::Vec3;
+use methods::setting;
 use zeroset_catalogue::{Dimension, LARGE, SMALL};
 
 /// What a check says.
@@ -290,15 +292,11 @@ pub fn sky(sky: &Sky) -> Check {
 pub fn settings(settings: &Settings, samples: u32) -> Check {
     size(settings.size).map_err(|e| e.at("size"))?;
     march(&settings.march).map_err(|e| e.at("march"))?;
-    count("max_steps", settings.max_steps, 1, 100_000)?;
-    count(
-        "discontinuity_reduction",
-        settings.discontinuity_reduction,
-        0,
-        16,
-    )?;
-    number("footprint", settings.footprint, 1e-3, 4.0)?;
-    number("exposure", settings.exposure, -20.0, 20.0)?;
+    setting(Settings::MAX_STEPS, Whole(settings.max_steps))?;
+    let reduction = Whole(settings.discontinuity_reduction);
+    setting(Settings::DISCONTINUITY_REDUCTION, reduction)?;
+    setting(Settings::FOOTPRINT, Real(settings.footprint))?;
+    setting(Settings::EXPOSURE, Real(settings.exposure))?;
     occlusion(&settings.occlusion, samples).map_err(|e| e.at("occlusion"))?;
     antialias(&settings.antialias, samples).map_err(|e| e.at("antialias"))
 }

@@ -45,8 +45,20 @@ pub fn has_skins(scene: &Scene, program: &Program) -> bool {
 }
 
 fn reads_distances(scene: &Scene) -> bool {
-    let cones = |o: &Occlusion| matches!(o, Occlusion::Cones { .. });
-    let soft = |s: &Shadow| matches!(s, Shadow::Soft { .. } | Shadow::SoftClosest { .. });
+    let cones = |o: &Occlusion| match o {
+        Occlusion::Cones { .. } => true,
+        Occlusion::None
+        | Occlusion::Quilez { .. }
+        | Occlusion::Bent { .. }
+        | Occlusion::Evans { .. }
+        | Occlusion::Upward { .. }
+        | Occlusion::Hemisphere { .. }
+        | Occlusion::Obscurance { .. } => false,
+    };
+    let soft = |s: &Shadow| match s {
+        Shadow::Soft { .. } | Shadow::SoftClosest { .. } => true,
+        Shadow::None | Shadow::Hard => false,
+    };
     cones(&scene.settings().occlusion)
         || (scene.objects().iter()).any(|o| o.occlusion.as_ref().is_some_and(cones))
         || scene.lights().iter().any(|light| soft(&light.shadow))

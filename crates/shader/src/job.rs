@@ -2,7 +2,7 @@
 
 use crate::entry::{CONE_SIDES, MARGIN};
 use crate::layout::{Frame, Light, Material, Occluder, rows};
-use crate::source::Key;
+use crate::source::{Key, number, pattern_kind, reach};
 use std::collections::HashMap;
 use std::sync::Arc;
 use zeroset_catalogue::bounds::Aabb;
@@ -197,7 +197,8 @@ impl Job {
         if self.frame.samples == 0 {
             0
         } else {
-            self.frame.filter_kind.min(MARGIN)
+            let kind = self.frame.filter_kind as usize;
+            Filter::ALL.get(kind).map_or(0, |f| reach(*f)).min(MARGIN)
         }
     }
 
@@ -309,11 +310,7 @@ fn seen(frame: Frame, camera: &Camera, size: [u32; 2], antialias: Antialias) -> 
         size,
         half: view.half,
         samples,
-        filter_kind: match filter {
-            Filter::Box => 0,
-            Filter::Tent => 1,
-            Filter::Mitchell => 2,
-        },
+        filter_kind: number(&filter),
         ..frame
     }
 }
@@ -368,11 +365,9 @@ fn light_row(light: &zeroset_scene::light::Light) -> Light {
         LightSource::Directional { direction } => (0.0, -direction),
         LightSource::Point { position } => (1.0, position),
     };
-    let (shadow, sharpness) = match light.shadow {
-        Shadow::None => (0.0, 0.0),
-        Shadow::Hard => (1.0, 0.0),
-        Shadow::Soft { sharpness } => (2.0, sharpness),
-        Shadow::SoftClosest { sharpness } => (3.0, sharpness),
+    let sharpness = match light.shadow {
+        Shadow::None | Shadow::Hard => 0.0,
+        Shadow::Soft { sharpness } | Shadow::SoftClosest { sharpness } => sharpness,
     };
     let c = light.radiance;
     Light {
@@ -380,7 +375,7 @@ fn light_row(light: &zeroset_scene::light::Light) -> Light {
         kind,
         radiance: c.to_array(),
         luminance: 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z,
-        shadow,
+        shadow: number(&light.shadow) as f32,
         sharpness,
         ..Light::default()
     }
@@ -390,7 +385,7 @@ fn light_row(light: &zeroset_scene::light::Light) -> Light {
 const UNLIMITED: f32 = 3.0e38;
 
 fn occluder(method: Occlusion) -> Occluder {
-    let kind = crate::source::occlusion_kind(&method) as f32;
+    let kind = number(&method) as f32;
     let of = |count: u32, reach: f32, scale: f32, bend: f32| Occluder {
         kind,
         count: count as f32,
@@ -420,7 +415,7 @@ fn occluder(method: Occlusion) -> Occluder {
 fn material_row(material: &material::Material, image: usize) -> Material {
     let zero = [0.0; 3];
     let mut row = Material {
-        kind: crate::source::pattern_kind(&material.pattern) as f32,
+        kind: pattern_kind(&material.pattern) as f32,
         specular: material.specular,
         shininess: material.shininess,
         metallic: material.metallic,

@@ -123,7 +123,7 @@ shared! {
         ambient: f32,
         /// Linear colour at the horizon.
         sky_horizon: [f32; 3],
-        /// Pixel filter: 0 box, 1 tent, 2 Mitchell.
+        /// Pixel filter: its place in `zeroset_scene::settings::Filter`.
         filter_kind: u32,
         /// Linear colour straight down.
         sky_bottom: [f32; 3],
@@ -189,7 +189,7 @@ shared! {
         radiance: [f32; 3],
         /// Luminance of that.
         luminance: f32,
-        /// 0 none, 1 hard, 2 soft, 3 soft with the closest place.
+        /// Its place in `zeroset_scene::settings::Shadow`.
         shadow: f32,
         /// Sharpness of the penumbra.
         sharpness: f32,

@@ -6,6 +6,7 @@ use crate::job::{FieldForm, LONGEST_COMPILED};
 use crate::layout::{
     Frame, Light, LightSum, Material, Occluder, Sample, Shared, SurfaceSum, Tile, loader, rows,
 };
+use std::cmp::Ordering;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::sync::{Arc, LazyLock};
@@ -14,8 +15,9 @@ use zeroset_field::program::{Program, Structure};
 use zeroset_number::record::{Argument, Recorder};
 use zeroset_number::wgsl;
 use zeroset_scene::material::Pattern;
+use zeroset_scene::methods::Choice;
 use zeroset_scene::scene::Scene;
-use zeroset_scene::settings::{March, Normals, Occlusion, Shading, Shadow};
+use zeroset_scene::settings::{Filter, March, Normals, Occlusion, Shading, Shadow};
 
 /// The text of a module, and what the module must find.
 pub(crate) struct Text {
@@ -39,12 +41,87 @@ pub(crate) struct Key {
     uniform_params: bool,
     /// Whether the table fits its uniform buffer.
     uniform_table: bool,
-    march: u32,
-    normals: Normals,
-    shading: Shading,
-    occlusion: BTreeSet<u32>,
-    shadows: BTreeSet<u32>,
-    patterns: BTreeSet<u32>,
+    march: &'static [Stage],
+    normals: &'static [Stage],
+    shading: Stage,
+    occlusion: BTreeSet<Case>,
+    /// Whether any light casts a shadow.
+    shadows: bool,
+    patterns: BTreeSet<Case>,
+}
+
+/// A part of the text that a method needs. Equal names, equal texts.
+#[derive(Clone, Copy, Debug)]
+struct Stage {
+    name: &'static str,
+    text: &'static str,
+}
+
+impl PartialEq for Stage {
+    fn eq(&self, other: &Stage) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Eq for Stage {}
+
+impl std::hash::Hash for Stage {
+    fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
+        self.name.hash(state);
+    }
+}
+
+/// A stage from the file that has its name.
+macro_rules! stage {
+    ($name:literal) => {
+        Stage {
+            name: $name,
+            text: include_str!(concat!("stage/", $name, ".wgsl")),
+        }
+    };
+}
+
+/// A method that a scene may mix with others: a shader tells them apart by a number. Equal numbers, equal methods.
+#[derive(Clone, Copy, Debug)]
+struct Case {
+    kind: u32,
+    stage: Stage,
+    call: &'static str,
+    /// What else it needs.
+    needs: Needs,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Needs {
+    Nothing,
+    Beams,
+    Noise,
+}
+
+impl PartialEq for Case {
+    fn eq(&self, other: &Case) -> bool {
+        self.kind == other.kind
+    }
+}
+
+impl Eq for Case {}
+
+impl PartialOrd for Case {
+    fn partial_cmp(&self, other: &Case) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Case {
+    fn cmp(&self, other: &Case) -> Ordering {
+        self.kind.cmp(&other.kind)
+    }
+}
+
+impl std::hash::Hash for Case {
+    fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
+        self.kind.hash(state);
+    }
 }
 
 impl Key {
@@ -61,17 +138,13 @@ impl Key {
             uniform_params: program.params().len() <= UNIFORM_NUMBERS,
             uniform_table: rows <= UNIFORM_ROWS,
             structure,
-            march: march_kind(&scene.settings().march),
-            normals: scene.settings().normals,
-            shading: scene.settings().shading,
-            occlusion: methods.map(occlusion_kind).collect(),
-            shadows: scene
-                .lights()
-                .iter()
-                .map(|l| shadow_kind(&l.shadow))
-                .collect(),
+            march: marcher(&scene.settings().march),
+            normals: normals(scene.settings().normals),
+            shading: shading(scene.settings().shading),
+            occlusion: methods.filter_map(occlusion).collect(),
+            shadows: scene.lights().iter().any(|l| casts(&l.shadow)),
             patterns: (scene.materials().iter())
-                .map(|m| pattern_kind(&m.pattern))
+                .filter_map(|m| pattern(&m.pattern))
                 .collect(),
         };
         if form == FieldForm::Auto {
@@ -186,6 +259,10 @@ impl Key {
         }
         text += &self.pattern_colour();
         text += &self.occlusion();
+        if self.beams() {
+            text += &penumbrae();
+        }
+        text += &filters();
         Text {
             text,
             code: field.code,
@@ -206,92 +283,56 @@ impl Key {
             include_str!("stage/shade.wgsl"),
             include_str!("stage/trace.wgsl"),
         ];
-        if self.march != MARCH_FIXED {
-            stages.push(include_str!("stage/march.wgsl"));
-        }
-        stages.push(match self.march {
-            MARCH_FIXED => include_str!("stage/march_fixed.wgsl"),
-            1 => include_str!("stage/march_sphere.wgsl"),
-            2 => include_str!("stage/march_relaxed.wgsl"),
-            3 => include_str!("stage/march_enhanced.wgsl"),
-            _ => include_str!("stage/march_auto.wgsl"),
-        });
-        if self.normals != Normals::Exact {
-            stages.push(include_str!("stage/normal.wgsl"));
-        }
-        match self.normals {
-            Normals::Exact => stages.push(include_str!("stage/normal_exact.wgsl")),
-            Normals::Tetrahedron => stages.push(include_str!("stage/normal_tetrahedron.wgsl")),
-            Normals::Central => stages.push("const NEIGHBOUR_AXES: f32 = 1.0;\n"),
-            Normals::Samples18 => stages.push("const NEIGHBOUR_AXES: f32 = 2.0;\n"),
-            Normals::Samples26 => stages.push("const NEIGHBOUR_AXES: f32 = 3.0;\n"),
-        }
-        if !matches!(self.normals, Normals::Exact | Normals::Tetrahedron) {
-            stages.push(include_str!("stage/normal_neighbours.wgsl"));
-        }
+        let chosen = self.march.iter().chain(self.normals).chain([&self.shading]);
+        stages.extend(chosen.map(|stage| stage.text));
         stages.push(if self.steep {
             include_str!("stage/distance_steep.wgsl")
         } else {
             include_str!("stage/distance.wgsl")
         });
-        let shadows = self.shadows.iter().any(|&kind| kind != 0);
-        if shadows || self.occlusion.iter().any(|kind| HEMISPHERES.contains(kind)) {
+        if self.beams() {
             stages.push(include_str!("stage/beam.wgsl"));
         }
-        stages.push(if shadows {
+        stages.push(if self.shadows {
             include_str!("stage/shadow.wgsl")
         } else {
             include_str!("stage/shadow_none.wgsl")
         });
-        stages.push(match self.shading {
-            Shading::Phong => include_str!("stage/shade_phong.wgsl"),
-            Shading::Lambert => include_str!("stage/shade_lambert.wgsl"),
-            Shading::LambertLegacy => include_str!("stage/shade_legacy.wgsl"),
-        });
-        stages.extend(
-            self.occlusion
-                .iter()
-                .filter_map(|&kind| Some(OCCLUSION[kind as usize]?.0)),
-        );
-        stages.extend(
-            self.patterns
-                .iter()
-                .filter_map(|&kind| Some(PATTERNS[kind as usize]?.1)),
-        );
-        if self.patterns.contains(&PATTERN_NOISE) {
+        let cases = self.occlusion.iter().chain(&self.patterns);
+        stages.extend(cases.map(|case| case.stage.text));
+        if self.needs(Needs::Noise) {
             stages.push(noise());
         }
         stages
     }
 
+    /// Whether any of its methods needs this.
+    fn needs(&self, what: Needs) -> bool {
+        let mut cases = self.occlusion.iter().chain(&self.patterns);
+        cases.any(|case| case.needs == what)
+    }
+
+    /// Whether rays go to lights or over hemispheres.
+    fn beams(&self) -> bool {
+        self.shadows || self.needs(Needs::Beams)
+    }
+
     /// The function that tells patterns apart.
     fn pattern_colour(&self) -> String {
-        let cases = self.patterns.iter().filter_map(|&kind| {
-            let (name, _) = PATTERNS[kind as usize]?;
-            Some(format!(
-                "        case {kind}u: {{\n            return {name}(m, at);\n        }}\n"
-            ))
-        });
         switch(
             "fn pattern_colour(m: Material, at: Place) -> vec3f",
             "m.kind",
-            cases.collect(),
+            self.patterns.iter().map(|case| (case.kind, case.call)),
             "m.a",
         )
     }
 
     /// The function that tells occlusion methods apart.
     fn occlusion(&self) -> String {
-        let cases = self.occlusion.iter().filter_map(|&kind| {
-            let (_, call) = OCCLUSION[kind as usize]?;
-            Some(format!(
-                "        case {kind}u: {{\n            return {call};\n        }}\n"
-            ))
-        });
         switch(
             "fn occlusion(at: Surface, how: Occluder, key: vec2u) -> Openness",
             "how.kind",
-            cases.collect(),
+            self.occlusion.iter().map(|case| (case.kind, case.call)),
             "Openness(1.0, at.normal)",
         )
     }
@@ -333,8 +374,17 @@ fn table_at(i: u32) -> vec4f {
 }
 ";
 
-/// A function that returns `otherwise` but in some cases.
-fn switch(signature: &str, kind: &str, cases: String, otherwise: &str) -> String {
+/// A function that returns `otherwise` but for some numbers: for each of these what it calls.
+fn switch<'a>(
+    signature: &str,
+    kind: &str,
+    cases: impl Iterator<Item = (u32, &'a str)>,
+    otherwise: &str,
+) -> String {
+    let case = |(kind, call)| {
+        format!("        case {kind}u: {{\n            return {call};\n        }}\n")
+    };
+    let cases: String = cases.map(case).collect();
     if cases.is_empty() {
         return format!("\n{signature} {{\n    return {otherwise};\n}}\n");
     }
@@ -356,100 +406,215 @@ fn noise() -> &'static str {
     &NOISE
 }
 
-const MARCH_FIXED: u32 = 0;
-const PATTERN_NOISE: u32 = 3;
-/// Occlusion methods that send rays.
-const HEMISPHERES: [u32; 2] = [6, 7];
+/// The function that tells penumbrae apart, and the numbers of all shadows: they are the same in every scene, so that another
+/// shadow needs no other shader.
+fn penumbrae() -> String {
+    let mut text = String::from("\n");
+    for (shadow, method) in Shadow::ALL.iter().zip(Shadow::METHODS) {
+        let (name, kind) = (method.name.to_uppercase(), number(shadow));
+        // writing to a string cannot fail
+        let _ = writeln!(text, "const SHADOW_{name}: u32 = {kind}u;");
+    }
+    let cases = Shadow::ALL
+        .iter()
+        .filter_map(|s| Some((number(s), penumbra(s)?)));
+    text += &switch(
+        "fn penumbra(f: f32, z: f32, r: f32, t: f32, kind: u32) -> f32",
+        "kind",
+        cases,
+        "1.0",
+    );
+    text
+}
 
-/// Stage and call of every occlusion method, by its number.
-const OCCLUSION: [Option<(&str, &str)>; 8] = [
-    None,
-    Some((
-        include_str!("stage/ao_quilez.wgsl"),
-        "Openness(ao_quilez(at, how), at.normal)",
-    )),
-    Some((
-        include_str!("stage/ao_bent.wgsl"),
-        "Openness(ao_bent(at, how), at.normal)",
-    )),
-    Some((
-        include_str!("stage/ao_evans.wgsl"),
-        "Openness(ao_evans(at, how), at.normal)",
-    )),
-    Some((
-        include_str!("stage/ao_upward.wgsl"),
-        "Openness(ao_upward(at, how), at.normal)",
-    )),
-    Some((include_str!("stage/ao_cones.wgsl"), "ao_cones(at, how)")),
-    Some((
-        include_str!("stage/ao_hemisphere.wgsl"),
-        "Openness(ao_hemisphere(at, how, key), at.normal)",
-    )),
-    Some((
-        include_str!("stage/ao_obscurance.wgsl"),
-        "Openness(ao_obscurance(at, how, key), at.normal)",
-    )),
-];
+/// The functions that tell filters apart: these too are the same in every scene.
+fn filters() -> String {
+    let weights = Filter::ALL.iter().map(|f| (number(f), filter(*f)));
+    let reaches: Vec<(u32, String)> = (Filter::ALL.iter())
+        .map(|f| (number(f), reach(*f).to_string()))
+        .collect();
+    let reaches = reaches.iter().map(|(kind, reach)| (*kind, reach.as_str()));
+    let kind = "frame.filter_kind";
+    switch("fn filter_at(d: f32) -> f32", kind, weights, "0.0")
+        + &switch("fn filter_reach() -> i32", kind, reaches, "0")
+}
 
-/// Function and stage of every pattern that is more than one colour, by its number.
-const PATTERNS: [Option<(&str, &str)>; 7] = [
-    None,
-    Some((
-        "pattern_checker",
-        include_str!("stage/pattern_checker.wgsl"),
-    )),
-    Some((
-        "pattern_stripes",
-        include_str!("stage/pattern_stripes.wgsl"),
-    )),
-    Some(("pattern_noise", include_str!("stage/pattern_noise.wgsl"))),
-    Some((
-        "pattern_gradient",
-        include_str!("stage/pattern_gradient.wgsl"),
-    )),
-    Some((
-        "pattern_triplanar",
-        include_str!("stage/pattern_triplanar.wgsl"),
-    )),
-    Some(("pattern_orbit", include_str!("stage/pattern_orbit.wgsl"))),
-];
+/// The number by which a shader knows a method: its place among those of its kind.
+pub(crate) fn number<T: Choice>(method: &T) -> u32 {
+    method.place() as u32
+}
 
-/// Number of a marcher in shaders.
-pub(crate) fn march_kind(march: &March) -> u32 {
+/// The stages of a marcher.
+fn marcher(march: &March) -> &'static [Stage] {
     match march {
-        March::Fixed { .. } => 0,
-        March::Sphere => 1,
-        March::Relaxed { .. } => 2,
-        March::Enhanced { .. } => 3,
-        March::Auto { .. } => 4,
+        March::Fixed { .. } => &[stage!("march_fixed")],
+        March::Sphere => &[stage!("march"), stage!("march_sphere")],
+        March::Relaxed { .. } => &[stage!("march"), stage!("march_relaxed")],
+        March::Enhanced { .. } => &[stage!("march"), stage!("march_enhanced")],
+        March::Auto { .. } => &[stage!("march"), stage!("march_auto")],
     }
 }
 
-/// Number of a shadow method in shaders.
-pub(crate) fn shadow_kind(shadow: &Shadow) -> u32 {
+/// The stages of a way to find normals.
+fn normals(normals: Normals) -> &'static [Stage] {
+    /// Differences over this many axes at a time, at most.
+    macro_rules! neighbours {
+        ($name:literal, $axes:literal) => {
+            &[
+                stage!("normal"),
+                stage!("normal_neighbours"),
+                Stage {
+                    name: $name,
+                    text: concat!("const NEIGHBOUR_AXES: f32 = ", $axes, ";\n"),
+                },
+            ]
+        };
+    }
+    match normals {
+        Normals::Exact => &[stage!("normal_exact")],
+        Normals::Tetrahedron => &[stage!("normal"), stage!("normal_tetrahedron")],
+        Normals::Central => neighbours!("one axis", "1.0"),
+        Normals::Samples18 => neighbours!("two axes", "2.0"),
+        Normals::Samples26 => neighbours!("three axes", "3.0"),
+    }
+}
+
+/// The stage of a light model.
+fn shading(shading: Shading) -> Stage {
+    match shading {
+        Shading::Phong => stage!("shade_phong"),
+        Shading::Lambert => stage!("shade_lambert"),
+        Shading::LambertLegacy => stage!("shade_legacy"),
+    }
+}
+
+/// Whether there is a shadow at all.
+fn casts(shadow: &Shadow) -> bool {
     match shadow {
-        Shadow::None => 0,
-        Shadow::Hard => 1,
-        Shadow::Soft { .. } => 2,
-        Shadow::SoftClosest { .. } => 3,
+        Shadow::None => false,
+        Shadow::Hard | Shadow::Soft { .. } | Shadow::SoftClosest { .. } => true,
     }
 }
 
-/// Number of an occlusion method in shaders.
-pub(crate) fn occlusion_kind(occlusion: &Occlusion) -> u32 {
-    match occlusion {
-        Occlusion::None => 0,
-        Occlusion::Quilez { .. } => 1,
-        Occlusion::Bent { .. } => 2,
-        Occlusion::Evans { .. } => 3,
-        Occlusion::Upward { .. } => 4,
-        Occlusion::Cones { .. } => 5,
-        Occlusion::Hemisphere { .. } => 6,
-        Occlusion::Obscurance { .. } => 7,
+/// How `beam.wgsl` finds the penumbra of a shadow, if it has one.
+fn penumbra(shadow: &Shadow) -> Option<&'static str> {
+    match shadow {
+        Shadow::None | Shadow::Hard => None,
+        Shadow::Soft { .. } => Some("penumbra_soft(f, t)"),
+        Shadow::SoftClosest { .. } => Some("penumbra_closest(f, z, r, t)"),
     }
 }
 
-/// Number of a pattern in shaders.
+/// The weight of a sample that is `d` pixels away, as in `sampling.wgsl`.
+fn filter(filter: Filter) -> &'static str {
+    match filter {
+        Filter::Box => "filter_box(d)",
+        Filter::Tent => "filter_tent(d)",
+        Filter::Mitchell => "filter_mitchell(d)",
+    }
+}
+
+/// How many pixels around its own a sample counts for.
+pub(crate) fn reach(filter: Filter) -> u32 {
+    match filter {
+        Filter::Box => 0,
+        Filter::Tent => 1,
+        Filter::Mitchell => 2,
+    }
+}
+
+/// Stage and call of an occlusion method; none where there is nothing to do.
+fn occlusion(method: &Occlusion) -> Option<Case> {
+    let case = |stage: Stage, call, needs| {
+        Some(Case {
+            kind: number(method),
+            stage,
+            call,
+            needs,
+        })
+    };
+    match method {
+        Occlusion::None => None,
+        Occlusion::Quilez { .. } => case(
+            stage!("ao_quilez"),
+            "Openness(ao_quilez(at, how), at.normal)",
+            Needs::Nothing,
+        ),
+        Occlusion::Bent { .. } => case(
+            stage!("ao_bent"),
+            "Openness(ao_bent(at, how), at.normal)",
+            Needs::Nothing,
+        ),
+        Occlusion::Evans { .. } => case(
+            stage!("ao_evans"),
+            "Openness(ao_evans(at, how), at.normal)",
+            Needs::Nothing,
+        ),
+        Occlusion::Upward { .. } => case(
+            stage!("ao_upward"),
+            "Openness(ao_upward(at, how), at.normal)",
+            Needs::Nothing,
+        ),
+        Occlusion::Cones { .. } => case(stage!("ao_cones"), "ao_cones(at, how)", Needs::Nothing),
+        Occlusion::Hemisphere { .. } => case(
+            stage!("ao_hemisphere"),
+            "Openness(ao_hemisphere(at, how, key), at.normal)",
+            Needs::Beams,
+        ),
+        Occlusion::Obscurance { .. } => case(
+            stage!("ao_obscurance"),
+            "Openness(ao_obscurance(at, how, key), at.normal)",
+            Needs::Beams,
+        ),
+    }
+}
+
+/// Stage and call of a pattern; none where it is one colour.
+fn pattern(pattern: &Pattern) -> Option<Case> {
+    let case = |stage: Stage, call, needs| {
+        Some(Case {
+            kind: pattern_kind(pattern),
+            stage,
+            call,
+            needs,
+        })
+    };
+    match pattern {
+        Pattern::Solid { .. } => None,
+        Pattern::Checker { .. } => case(
+            stage!("pattern_checker"),
+            "pattern_checker(m, at)",
+            Needs::Nothing,
+        ),
+        Pattern::Stripes { .. } => case(
+            stage!("pattern_stripes"),
+            "pattern_stripes(m, at)",
+            Needs::Nothing,
+        ),
+        Pattern::Noise { .. } => case(
+            stage!("pattern_noise"),
+            "pattern_noise(m, at)",
+            Needs::Noise,
+        ),
+        Pattern::Gradient { .. } => case(
+            stage!("pattern_gradient"),
+            "pattern_gradient(m, at)",
+            Needs::Nothing,
+        ),
+        Pattern::Triplanar { .. } => case(
+            stage!("pattern_triplanar"),
+            "pattern_triplanar(m, at)",
+            Needs::Nothing,
+        ),
+        Pattern::Orbit { .. } => case(
+            stage!("pattern_orbit"),
+            "pattern_orbit(m, at)",
+            Needs::Nothing,
+        ),
+    }
+}
+
+/// The number by which a shader knows a pattern.
 pub(crate) fn pattern_kind(pattern: &Pattern) -> u32 {
     match pattern {
         Pattern::Solid { .. } => 0,

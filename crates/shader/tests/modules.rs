@@ -89,56 +89,12 @@ show(mandelbulb().move(x = 12), material(color = orbit(center = "red", x = "whit
 #[test]
 fn every_method_has_a_valid_shader() {
     let base = scene("show(sphere(1))");
-    let marchers = [
-        March::Fixed { step: 0.1 },
-        March::Sphere,
-        March::Relaxed { omega: 1.6 },
-        March::Enhanced { share: 0.9 },
-        March::Auto { beta: 0.3 },
-    ];
-    let normals = [
-        Normals::Tetrahedron,
-        Normals::Central,
-        Normals::Samples18,
-        Normals::Samples26,
-        Normals::Exact,
-    ];
-    let shadings = [Shading::Phong, Shading::Lambert, Shading::LambertLegacy];
-    let shadows = [
-        Shadow::None,
-        Shadow::Hard,
-        Shadow::Soft { sharpness: 8.0 },
-        Shadow::SoftClosest { sharpness: 8.0 },
-    ];
-    let (step, scale, bend, reach) = (0.1, 1.0, 0.1, Some(1.0));
-    let occlusions = [
-        Occlusion::None,
-        Occlusion::Quilez {
-            steps: 5,
-            step,
-            scale,
-        },
-        Occlusion::Bent {
-            steps: 5,
-            step,
-            scale,
-            bend,
-        },
-        Occlusion::Evans { scale, step, bend },
-        Occlusion::Upward { scale },
-        Occlusion::Cones { reach, steps: 5 },
-        Occlusion::Hemisphere { rays: 4, reach },
-        Occlusion::Obscurance {
-            rays: 4,
-            reach,
-            tau: 1.0,
-        },
-    ];
+    let (normals, shadings, shadows) = (Normals::ALL, Shading::ALL, Shadow::ALL);
     let mut texts = BTreeMap::new();
     let mut count = 0;
-    for (i, (march, occlusion)) in (marchers
+    for (i, (march, occlusion)) in (March::ALL
         .iter()
-        .flat_map(|m| occlusions.iter().map(move |o| (m, o))))
+        .flat_map(|m| Occlusion::ALL.iter().map(move |o| (m, o))))
     .enumerate()
     {
         let mut scene = base.clone();

@@ -7,6 +7,7 @@ use std::path::Path;
 use zeroset::gpu::{GpuRenderer, testing};
 use zeroset::language::load::{Language, Options, load, load_text};
 use zeroset::scene::film::{Film, Plane};
+use zeroset::scene::methods::{Choice, Kind, Param, Value};
 use zeroset::scene::render::{Renderer, Silent};
 use zeroset::scene::scene::{Scene, SceneParts};
 use zeroset::scene::settings::{
@@ -149,7 +150,34 @@ fn an_interpreted_field_is_the_compiled_one() {
     none(all.collect());
 }
 
-/// Every method that a scene can choose, once.
+/// All methods of a kind as they are by default, and where they have numbers, once more with others.
+fn variants<T: Choice>() -> Vec<T> {
+    let each = |&base: &T| {
+        let mut other = base;
+        for param in base.method().params {
+            other.set(param.name, another(param)).expect("a value");
+        }
+        [Some(base), (other != base).then_some(other)]
+    };
+    T::all().iter().flat_map(each).flatten().collect()
+}
+
+/// The middle of what is usual, or the last word.
+fn another(param: &Param) -> Value {
+    let (low, high) = param.usual;
+    let middle = if param.is_logarithmic {
+        (low * high).sqrt()
+    } else {
+        0.5 * (low + high)
+    };
+    match param.kind {
+        Kind::Real | Kind::Limit => param.value(middle).expect("a number"),
+        Kind::Whole => param.value(middle.round()).expect("a whole number"),
+        Kind::Word(methods) => Value::Word(methods.len() - 1),
+    }
+}
+
+/// Every method that a scene can choose.
 fn methods() -> Vec<(String, Scene)> {
     let base = hello();
     let mut all = Vec::new();
@@ -163,67 +191,21 @@ fn methods() -> Vec<(String, Scene)> {
         );
         all.push((name, scene));
     };
-    for march in [
-        March::Fixed { step: 0.02 },
-        March::Sphere,
-        March::Relaxed { omega: 1.6 },
-        March::Enhanced { share: 0.9 },
-    ] {
+    for march in variants::<March>() {
         with(&|s| {
             (s.settings.march, s.settings.max_steps) = (march, 2000);
         });
     }
-    for normals in [
-        Normals::Tetrahedron,
-        Normals::Central,
-        Normals::Samples18,
-        Normals::Samples26,
-    ] {
+    for normals in variants::<Normals>() {
         with(&|s| s.settings.normals = normals);
     }
-    for shading in [Shading::Lambert, Shading::LambertLegacy] {
+    for shading in variants::<Shading>() {
         with(&|s| s.settings.shading = shading);
     }
-    for shadow in [
-        Shadow::None,
-        Shadow::Hard,
-        Shadow::Soft { sharpness: 8.0 },
-        Shadow::SoftClosest { sharpness: 8.0 },
-    ] {
+    for shadow in variants::<Shadow>() {
         with(&|s| s.lights.iter_mut().for_each(|l| l.shadow = shadow));
     }
-    let (step, scale, bend, reach) = (0.12, 1.2, 0.1, Some(1.0));
-    for occlusion in [
-        Occlusion::None,
-        Occlusion::Quilez {
-            steps: 5,
-            step,
-            scale,
-        },
-        Occlusion::Bent {
-            steps: 5,
-            step,
-            scale,
-            bend,
-        },
-        Occlusion::Evans { scale, step, bend },
-        Occlusion::Upward { scale },
-        Occlusion::Cones {
-            reach: None,
-            steps: 14,
-        },
-        Occlusion::Cones { reach, steps: 6 },
-        Occlusion::Hemisphere { rays: 16, reach },
-        Occlusion::Hemisphere {
-            rays: 16,
-            reach: None,
-        },
-        Occlusion::Obscurance {
-            rays: 16,
-            reach,
-            tau: 2.0,
-        },
-    ] {
+    for occlusion in variants::<Occlusion>() {
         with(&|s| s.settings.occlusion = occlusion);
         with(&|s| s.objects[0].occlusion = Some(occlusion));
     }
@@ -263,7 +245,7 @@ fn the_gpu_filters_as_the_cpu() {
         return;
     };
     let renderer = CpuRenderer::new(None).unwrap();
-    for filter in [Filter::Box, Filter::Tent, Filter::Mitchell] {
+    for filter in Filter::ALL {
         let mut scene = hello();
         scene
             .edit(|s| s.settings.antialias = Antialias::Supersample { samples: 5, filter })

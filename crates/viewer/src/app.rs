@@ -3,7 +3,6 @@
 use crate::engine::{Engine, Event};
 use crate::launch::Open;
 use crate::loader::Loader;
-use crate::methods::Choice;
 use crate::panel;
 use crate::panel::set_comparison;
 use crate::rig::Side;
@@ -20,6 +19,7 @@ use glam::DVec3;
 use std::time::{Duration, Instant};
 use zeroset_output::display::{LINE, NAME, name};
 use zeroset_scene::film::Plane;
+use zeroset_scene::methods::Choice;
 
 /// How long a note is shown.
 const NOTE: Duration = Duration::from_secs(5);
@@ -335,8 +335,7 @@ impl App {
         }
         if pressed(none, Key::V) {
             let plane = &mut session.edited().plane;
-            let all = Plane::methods();
-            *plane = all[(plane.place() + 1) % all.len()].make;
+            *plane = Plane::ALL[(plane.place() + 1) % Plane::ALL.len()];
         }
         if pressed(none, Key::P) {
             self.is_panel_open = !self.is_panel_open;

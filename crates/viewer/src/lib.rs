@@ -10,7 +10,6 @@
 //! | [`engine`] | the thread that renders them |
 //! | [`loader`] | the thread that loads the scene, and again on every save |
 //! | [`clock`] | the time of an animation |
-//! | [`methods`] | every method that can be chosen, with its source |
 //! | [`slice`](mod@slice), [`pick`] | a plane through the field; what is under the cursor |
 //! | [`app`] | the window itself |
 
@@ -21,7 +20,6 @@ pub mod engine;
 pub mod ladder;
 mod launch;
 pub mod loader;
-pub mod methods;
 pub mod panel;
 pub mod pick;
 pub mod rig;

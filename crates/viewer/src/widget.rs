@@ -1,9 +1,9 @@
 //! Controls that the panels are made of. Every one has a name that a screen reader says.
 
-use crate::methods::{Choice, Dial, Method, Number};
 use eframe::egui::{
     Align, CollapsingHeader, ComboBox, Layout, Response, RichText, Slider, SliderClamping, Ui, Vec2,
 };
+use zeroset_scene::methods::{Choice, Kind, Method, Param, Unit, Value};
 
 /// Width of the names before controls.
 const NAMES: f32 = 104.0;
@@ -73,81 +73,117 @@ pub(crate) fn switch(ui: &mut Ui, name: &str, about: &str, on: &mut bool) -> Res
     ui.checkbox(on, name).on_hover_text(about)
 }
 
-/// A number of a method.
-pub(crate) fn dial(ui: &mut Ui, dial: Dial<'_>) -> bool {
-    let (low, high) = dial.range;
-    let slider = match dial.number {
-        Number::Real(x) => Slider::new(x, low..=high).max_decimals(3),
-        Number::Whole(n) => Slider::new(n, low as u32..=high as u32),
-        Number::Limit(limit) => {
-            let mut x = limit.unwrap_or(high);
-            let slider = Slider::new(&mut x, low..=high)
-                .logarithmic(dial.is_logarithmic)
-                .custom_formatter(move |x, _| {
-                    if x >= f64::from(high) {
-                        "unlimited".to_owned()
-                    } else {
-                        format!("{x:.3}")
-                    }
-                });
-            let changed = slide(ui, dial.name, dial.about, slider).changed();
-            if changed {
-                *limit = (x < high).then_some(x);
-            }
-            return changed;
+/// A parameter with its value; what it becomes, where it is changed.
+pub(crate) fn dial(ui: &mut Ui, param: &Param, value: Value) -> Option<Value> {
+    let about = match param.unit {
+        Unit::Length | Unit::PerLength => {
+            format!(
+                "{}, {}.",
+                param.doc.trim_end_matches('.'),
+                param.unit.name()
+            )
         }
+        Unit::Ratio | Unit::Count | Unit::Pixels | Unit::Stops => param.doc.to_owned(),
     };
-    let slider = slider.logarithmic(dial.is_logarithmic);
-    slide(ui, dial.name, dial.about, slider).changed()
+    let (low, high) = (param.usual.0 as f32, param.usual.1 as f32);
+    let mut shown = |slider: Slider<'_>| {
+        let slider = slider.logarithmic(param.is_logarithmic);
+        slide(ui, param.title, &about, slider).changed()
+    };
+    match value {
+        Value::Real(mut x) => {
+            let slider = Slider::new(&mut x, low..=high).max_decimals(3);
+            shown(slider).then_some(Value::Real(x))
+        }
+        Value::Whole(mut n) => {
+            let slider = Slider::new(&mut n, low as u32..=high as u32);
+            shown(slider).then_some(Value::Whole(n))
+        }
+        Value::Limit(limit) => {
+            // the end of the slider stands for no limit
+            let mut x = limit.unwrap_or(high);
+            let slider = Slider::new(&mut x, low..=high).custom_formatter(move |x, _| {
+                if x >= f64::from(high) {
+                    "unlimited".to_owned()
+                } else {
+                    format!("{x:.3}")
+                }
+            });
+            shown(slider).then_some(Value::Limit((x < high).then_some(x)))
+        }
+        Value::Word(place) => {
+            let Kind::Word(methods) = param.kind else {
+                return None;
+            };
+            let chosen = pop_up(ui, param.title, methods, Some(place), None).flatten();
+            explain(ui, methods.get(chosen.unwrap_or(place))?);
+            chosen.map(Value::Word)
+        }
+    }
+}
+
+/// A number of the settings.
+pub(crate) fn real(ui: &mut Ui, param: &Param, number: &mut f32) {
+    if let Some(Value::Real(x)) = dial(ui, param, Value::Real(*number)) {
+        *number = x;
+    }
+}
+
+/// A whole number of the settings.
+pub(crate) fn whole(ui: &mut Ui, param: &Param, number: &mut u32) {
+    if let Some(Value::Whole(n)) = dial(ui, param, Value::Whole(*number)) {
+        *number = n;
+    }
+}
+
+/// What a method does, and its numbers.
+fn details<T: Choice>(ui: &mut Ui, chosen: &mut T) {
+    explain(ui, chosen.method());
+    for param in chosen.method().params {
+        if let Some(value) = chosen.get(param.name)
+            && let Some(value) = dial(ui, param, value)
+        {
+            // sliders end within what is allowed, and what is typed is clamped to them
+            let _ = chosen.set(param.name, value);
+        }
+    }
 }
 
 /// A method among all of its kind, with what it does, and its numbers.
-pub(crate) fn choose<T: Choice + PartialEq>(ui: &mut Ui, name: &str, chosen: &mut T) -> bool {
+pub(crate) fn choose<T: Choice>(ui: &mut Ui, name: &str, chosen: &mut T) -> bool {
     let before = *chosen;
-    let place = chosen.place();
-    let methods = T::methods();
-    if let Some(place) = pop_up(ui, name, methods, Some(place), None)
-        && let Some(method) = place.and_then(|p| methods.get(p))
-    {
-        *chosen = method.make;
+    if let Some(Some(place)) = pop_up(ui, name, T::METHODS, Some(chosen.place()), None) {
+        *chosen = T::all()[place];
     }
-    explain(ui, &methods[chosen.place()]);
-    for number in chosen.dials() {
-        dial(ui, number);
-    }
+    details(ui, chosen);
     *chosen != before
 }
 
 /// As [`choose`], with a word for the choice to make none.
-pub(crate) fn choose_or<T: Choice + PartialEq>(
+pub(crate) fn choose_or<T: Choice>(
     ui: &mut Ui,
     name: &str,
     none: &'static str,
     chosen: &mut Option<T>,
 ) {
     let place = chosen.as_ref().map(Choice::place);
-    let methods = T::methods();
-    if let Some(place) = pop_up(ui, name, methods, place, Some(none)) {
-        *chosen = place.and_then(|p| methods.get(p)).map(|m| m.make);
+    if let Some(place) = pop_up(ui, name, T::METHODS, place, Some(none)) {
+        *chosen = place.map(|p| T::all()[p]);
     }
-    let Some(chosen) = chosen else {
-        return;
-    };
-    explain(ui, &methods[chosen.place()]);
-    for number in chosen.dials() {
-        dial(ui, number);
+    if let Some(chosen) = chosen {
+        details(ui, chosen);
     }
 }
 
 /// A list of methods that pops up. Gives what was chosen; inside, `None` is the choice to make none.
-fn pop_up<T>(
+fn pop_up(
     ui: &mut Ui,
     name: &str,
-    methods: &[Method<T>],
+    methods: &[Method],
     place: Option<usize>,
     none: Option<&'static str>,
 ) -> Option<Option<usize>> {
-    let text = place.map_or(none.unwrap_or_default(), |p| methods[p].name);
+    let text = place.map_or(none.unwrap_or_default(), |p| methods[p].title);
     let (_, chosen) = row(ui, name, "", |ui| {
         let mut chosen = None;
         let shown = ComboBox::from_id_salt(name)
@@ -160,8 +196,8 @@ fn pop_up<T>(
                     chosen = Some(None);
                 }
                 for (i, method) in methods.iter().enumerate() {
-                    let entry = ui.selectable_label(place == Some(i), method.name);
-                    let about = format!("{}\n{}", method.about, method.source)
+                    let entry = ui.selectable_label(place == Some(i), method.title);
+                    let about = format!("{}\n{}", method.doc, method.source)
                         .trim_end()
                         .to_owned();
                     if entry.on_hover_text(about).clicked() {
@@ -169,7 +205,7 @@ fn pop_up<T>(
                     }
                 }
             });
-        let about = place.map_or_else(String::new, |p| methods[p].about.to_owned());
+        let about = place.map_or_else(String::new, |p| methods[p].doc.to_owned());
         let response = shown.response.accessible_name(name);
         if !about.is_empty() {
             response.on_hover_text(about);
@@ -180,10 +216,10 @@ fn pop_up<T>(
 }
 
 /// What a method does and where it comes from.
-fn explain<T>(ui: &mut Ui, method: &Method<T>) {
+fn explain(ui: &mut Ui, method: &Method) {
     let text = match method.source {
-        "" => method.about.to_owned(),
-        source => format!("{} [{source}]", method.about),
+        "" => method.doc.to_owned(),
+        source => format!("{} [{source}]", method.doc),
     };
     ui.label(RichText::new(text).small().weak());
     ui.add_space(1.0);

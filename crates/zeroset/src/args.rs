@@ -2,13 +2,17 @@
 
 use crate::backend::Backend;
 use crate::console::Colour;
-use crate::failure::EXIT_CODES;
-use crate::values::{Frames, MarchChoice, SectionPlane, Size, Window, assignment};
+use crate::failure::{EXIT_CODES, Exit, Failure};
+use crate::values::{Chosen, Frames, SectionPlane, Size, Window, assignment, help};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueHint};
 use clap_complete::Shell;
 use std::path::PathBuf;
+use zeroset_language::limits::Limits;
 use zeroset_scene::film::Plane;
+use zeroset_scene::methods::Choice;
+use zeroset_scene::scene::Scene;
+use zeroset_scene::settings::{Antialias, March, Normals, Occlusion, Shading, Shadow};
 
 /// Renders signed distance fields: from a scene of a few lines to a picture.
 #[derive(Debug, Parser)]
@@ -128,9 +132,8 @@ pub(crate) struct Render {
     /// Bits a channel of a PNG
     #[arg(long, value_name = "BITS", value_parser = PossibleValuesParser::new(["8", "16"]), default_value = "8")]
     pub bits: String,
-    /// How rays find the surface: fixed[=STEP], sphere, relaxed[=OMEGA], enhanced[=SHARE] or auto[=BETA]
-    #[arg(long, value_name = "METHOD")]
-    pub march: Option<MarchChoice>,
+    #[command(flatten)]
+    pub methods: Methods,
     /// What renders
     #[arg(long, value_name = "WHAT", value_enum, default_value_t)]
     pub backend: Backend,
@@ -158,6 +161,62 @@ pub(crate) struct Render {
     /// Print what was rendered and what it took as JSON, one line a picture
     #[arg(long)]
     pub json: bool,
+}
+
+/// Methods in place of those that the scene states. `zeroset fields methods` explains them.
+#[derive(Debug, Args)]
+pub(crate) struct Methods {
+    #[arg(long, value_name = "METHOD", help_heading = "Methods", help = help::<March>("How rays find the surface"))]
+    pub march: Option<Chosen<March>>,
+    #[arg(long, value_name = "METHOD", help_heading = "Methods", help = help::<Normals>("How normals are found"))]
+    pub normals: Option<Chosen<Normals>>,
+    #[arg(long, value_name = "METHOD", help_heading = "Methods", help = help::<Shadow>("The shadows of all lights"))]
+    pub shadow: Option<Chosen<Shadow>>,
+    #[arg(long, value_name = "METHOD", help_heading = "Methods", help = help::<Occlusion>("Ambient occlusion, where an object has none of its own"))]
+    pub ao: Option<Chosen<Occlusion>>,
+    #[arg(long, value_name = "METHOD", help_heading = "Methods", help = help::<Antialias>("How edges are smoothed"))]
+    pub aa: Option<Chosen<Antialias>>,
+    #[arg(long, value_name = "METHOD", help_heading = "Methods", help = help::<Shading>("How light becomes colour"))]
+    pub shading: Option<Chosen<Shading>>,
+}
+
+impl Methods {
+    /// Puts what is chosen into a scene.
+    ///
+    /// # Errors
+    /// A method takes more samples than are allowed.
+    pub(crate) fn apply(&self, scene: &mut Scene, limits: &Limits) -> Result<(), Failure> {
+        let mut parts = scene.clone().into_parts();
+        let settings = &mut parts.settings;
+        put("march", self.march, &mut settings.march, limits)?;
+        put("normals", self.normals, &mut settings.normals, limits)?;
+        put("ao", self.ao, &mut settings.occlusion, limits)?;
+        put("aa", self.aa, &mut settings.antialias, limits)?;
+        put("shading", self.shading, &mut settings.shading, limits)?;
+        for light in &mut parts.lights {
+            put("shadow", self.shadow, &mut light.shadow, limits)?;
+        }
+        *scene = parts.build()?;
+        Ok(())
+    }
+}
+
+fn put<T: Choice>(
+    flag: &str,
+    chosen: Option<Chosen<T>>,
+    place: &mut T,
+    limits: &Limits,
+) -> Result<(), Failure> {
+    let Some(Chosen(method)) = chosen else {
+        return Ok(());
+    };
+    (method.check(limits.samples)).map_err(|(param, refused)| {
+        let message = format!("`{param}` of --{flag} {refused}");
+        let help = "--limit samples=NUMBER allows more";
+        Failure::with_help(Exit::Usage, message, help)
+    })?;
+    *place = method;
+    Ok(())
 }
 
 #[cfg(feature = "window")]

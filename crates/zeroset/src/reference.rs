@@ -8,6 +8,7 @@ use zeroset_catalogue::entries::{Catalogue, MapEntry, ModifyEntry, PrimitiveEntr
 use zeroset_catalogue::{Dimension, Info, Kind, Param, Stretch, Unit};
 use zeroset_language::limits::{LIMITS, Limits};
 use zeroset_language::starlark::{Word, words};
+use zeroset_scene::methods::{self, GROUPS, Method};
 
 /// What is known about a name.
 #[derive(Clone, Debug, Serialize)]
@@ -47,6 +48,12 @@ pub(crate) struct Parameter {
     pub min: Option<f64>,
     /// Largest number allowed; none where the line below says it.
     pub max: Option<f64>,
+    /// Whether the smallest number itself is not allowed.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub is_above: bool,
+    /// Whether the largest number itself is not allowed.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub is_below: bool,
     /// One line.
     pub doc: &'static str,
 }
@@ -201,6 +208,12 @@ fn entry(
 
 /// A function or method of the language.
 fn word(word: Word) -> Entry {
+    // what the registry of methods knows besides
+    let known = (GROUPS
+        .iter()
+        .filter(|g| g.is_called() && g.title == word.group))
+    .flat_map(|g| g.methods)
+    .find(|m| m.word == word.name);
     let parameter = |(name, default, doc): (&'static str, &'static str, &'static str)| Parameter {
         name,
         kind: None,
@@ -208,20 +221,84 @@ fn word(word: Word) -> Entry {
         default: (!default.is_empty()).then(|| default.to_owned()),
         min: None,
         max: None,
+        is_above: false,
+        is_below: false,
         doc,
     };
-    let parameters: Vec<Parameter> = word.params.into_iter().map(parameter).collect();
+    let parameters: Vec<Parameter> = match known {
+        Some(method) => method.params.iter().map(number).collect(),
+        None => word.params.into_iter().map(parameter).collect(),
+    };
     Entry {
         name: word.name,
         kind: if word.method { "method" } else { "function" },
         group: word.group,
         doc: word.doc,
-        source: "",
+        source: known.map_or("", |m| m.source),
         dimension: None,
         parameters,
         facts: Vec::new(),
         example: None,
     }
+}
+
+/// A parameter of a method of rendering.
+fn number(param: &methods::Param) -> Parameter {
+    let is_word = matches!(param.kind, methods::Kind::Word(_));
+    let range = (!is_word).then_some(param.allowed);
+    Parameter {
+        name: param.name,
+        kind: Some(match param.kind {
+            methods::Kind::Real => "number".to_owned(),
+            methods::Kind::Whole => "whole number".to_owned(),
+            methods::Kind::Limit => "number, or nothing for no limit".to_owned(),
+            methods::Kind::Word(words) => either(words),
+        }),
+        unit: (!is_word).then(|| param.unit.name()),
+        default: Some(param.written(param.default)),
+        min: range.map(|r| r.min),
+        max: range.map(|r| r.max),
+        is_above: range.is_some_and(|r| r.is_above),
+        is_below: range.is_some_and(|r| r.is_below),
+        doc: param.doc,
+    }
+}
+
+/// Methods as words.
+fn either(methods: &[Method]) -> String {
+    let names: Vec<String> = methods.iter().map(|m| format!("\"{}\"", m.name)).collect();
+    names.join(" or ")
+}
+
+/// All methods of rendering, as a page.
+pub(crate) fn methods() -> String {
+    let mut out = "Methods of which a rendering chooses one each, the default first. A scene states them, `zeroset render`\n\
+                   takes them as flags: --march relaxed=1.4, or --ao bent,steps=7,bend=0.1.\n"
+        .to_owned();
+    for group in &GROUPS {
+        let _ = writeln!(out, "\n{}: {}", group.title, group.key);
+        for method in group.methods {
+            let also = match method.word == method.name {
+                true => String::new(),
+                false => format!(" (in scenes {})", method.word),
+            };
+            let _ = writeln!(
+                out,
+                "  {}{also}\n      {} [{}]",
+                method.name, method.doc, method.source
+            );
+            for param in method.params.iter().map(number) {
+                let _ = writeln!(
+                    out,
+                    "      {}: {} ({})",
+                    param.name,
+                    param.doc.trim_end_matches('.'),
+                    allowed(&param)
+                );
+            }
+        }
+    }
+    out
 }
 
 fn parameter(param: &Param) -> Parameter {
@@ -246,6 +323,8 @@ fn parameter(param: &Param) -> Parameter {
         default: written(param),
         min: Some(spoken(param, param.min)),
         max: Some(spoken(param, param.max)),
+        is_above: false,
+        is_below: false,
         doc: param.doc,
     }
 }
@@ -371,10 +450,11 @@ pub(crate) fn signature(entry: &Entry) -> String {
 
 /// Kind, unit, range and default of a parameter, as far as they are known.
 fn allowed(p: &Parameter) -> String {
-    let range = p
-        .min
-        .zip(p.max)
-        .map(|(min, max)| format!("{} to {}", shortest(min), shortest(max)));
+    let range = p.min.zip(p.max).map(|(min, max)| {
+        let above = if p.is_above { "above " } else { "" };
+        let below = if p.is_below { "below " } else { "" };
+        format!("{above}{} to {below}{}", shortest(min), shortest(max))
+    });
     let default = p
         .default
         .as_ref()

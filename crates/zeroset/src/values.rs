@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 use std::str::FromStr;
-use zeroset_scene::settings::March;
+use zeroset_scene::methods::{Choice, Kind, Method, Param, Value};
 
 /// A size in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,43 +49,85 @@ pub(crate) fn positive(text: &str) -> Result<f64, &'static str> {
         .ok_or("write a number above 0")
 }
 
-/// A march method with its number.
+/// A method with its numbers: `NAME`, `NAME=NUMBER` for the first of them, `NAME,PARAM=NUMBER,...` for any.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct MarchChoice(pub March);
+pub(crate) struct Chosen<T>(pub T);
 
-impl FromStr for MarchChoice {
+impl<T: Choice> FromStr for Chosen<T> {
     type Err = String;
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let (name, number) = match text.split_once('=') {
-            None => (text, None),
-            Some((name, number)) => match number.parse::<f32>() {
-                Ok(number) if number.is_finite() => (name, Some(number)),
-                _ => return Err(format!("`{number}` is not a number")),
-            },
+        let mut parts = text.split(',');
+        let first = parts.next().unwrap_or_default();
+        let (name, number) = match first.split_once('=') {
+            Some((name, number)) => (name.trim(), Some(number)),
+            None => (first.trim(), None),
         };
-        let within = |default: f32, low: f32, high: f32, what: &str| match number.unwrap_or(default)
-        {
-            x if (low..=high).contains(&x) => Ok(x),
-            x => Err(format!("{what} is {x}, allowed is {low} to {high}")),
-        };
-        Ok(MarchChoice(match name {
-            "fixed" => March::Fixed {
-                step: within(0.02, 1e-5, 1e3, "the step")?,
-            },
-            "sphere" if number.is_some() => return Err("`sphere` takes no number".to_owned()),
-            "sphere" => March::Sphere,
-            "relaxed" => March::Relaxed {
-                omega: within(1.2, 1.0, 1.99, "omega")?,
-            },
-            "enhanced" => March::Enhanced {
-                share: within(0.9, 0.1, 0.99, "the share")?,
-            },
-            "auto" => March::Auto {
-                beta: within(0.3, 0.0, 1.0, "beta")?,
-            },
-            _ => return Err("the methods are fixed, sphere, relaxed, enhanced and auto".to_owned()),
-        }))
+        let mut made = T::named(name).ok_or_else(|| {
+            let names: Vec<_> = T::METHODS.iter().map(|m| m.name).collect();
+            let (last, others) = names.split_last().unwrap_or((&"", &[]));
+            format!("the methods are {} and {last}", others.join(", "))
+        })?;
+        let params = made.method().params;
+        let names = || params.iter().map(|p| p.name).collect::<Vec<_>>().join(", ");
+        let mut given = Vec::new();
+        if let Some(number) = number {
+            let param = params.first().ok_or(format!("`{name}` takes no number"))?;
+            given.push((param, number));
+        }
+        for part in parts {
+            let (param, value) = (part.split_once('='))
+                .ok_or_else(|| format!("write `{name},PARAM=NUMBER`, not `{part}`"))?;
+            let found = params.iter().find(|p| p.name == param.trim());
+            let found = found.ok_or_else(|| match params {
+                [] => format!("`{name}` takes no number"),
+                _ => format!("`{name}` has no `{}`, it takes {}", param.trim(), names()),
+            })?;
+            given.push((found, value));
+        }
+        for (i, (param, value)) in given.iter().enumerate() {
+            if given[..i].iter().any(|(other, _)| other.name == param.name) {
+                return Err(format!("`{}` is given twice", param.name));
+            }
+            let value = read(param, value.trim())?;
+            (made.set(param.name, value)).map_err(|e| format!("{} {e}", param.name))?;
+        }
+        Ok(Chosen(made))
     }
+}
+
+/// The value of a parameter, from text.
+fn read(param: &Param, text: &str) -> Result<Value, String> {
+    match param.kind {
+        Kind::Word(methods) => param.word(text).ok_or_else(|| {
+            let names: Vec<_> = methods.iter().map(|m| m.name).collect();
+            format!("{} is one of {}", param.name, names.join(", "))
+        }),
+        Kind::Limit if text == "unlimited" => Ok(Value::Limit(None)),
+        Kind::Limit | Kind::Real | Kind::Whole => match text.parse::<f64>() {
+            Ok(x) if x.is_finite() => param
+                .value(x)
+                .map_err(|refused| format!("{} {refused}", param.name)),
+            _ => Err(format!("`{text}` is not a number")),
+        },
+    }
+}
+
+/// What a choice of methods is, for `--help`: the methods with what they take.
+pub(crate) fn help<T: Choice>(what: &str) -> String {
+    let each = |method: &Method| {
+        let param = |(i, p): (usize, &Param)| {
+            let name = p.name.to_uppercase();
+            if i == 0 {
+                format!("[={name}]")
+            } else {
+                format!("[,{}={name}]", p.name)
+            }
+        };
+        let params: String = method.params.iter().enumerate().map(param).collect();
+        format!("{}{params}", method.name)
+    };
+    let all: Vec<String> = T::METHODS.iter().map(each).collect();
+    format!("{what}: {}", all.join(", "))
 }
 
 /// Numbers of frames.
@@ -178,6 +220,10 @@ impl FromStr for Window {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde::Serialize;
+    use zeroset_language::load::{Language, Options, load_text};
+    use zeroset_scene::methods::Allowed;
+    use zeroset_scene::settings::{Antialias, Filter, March, Occlusion, Shadow};
 
     #[test]
     fn good_values_are_read() {
@@ -188,9 +234,29 @@ mod tests {
         );
         assert_eq!(
             "relaxed=1.2".parse(),
-            Ok(MarchChoice(March::Relaxed { omega: 1.2 }))
+            Ok(Chosen(March::Relaxed { omega: 1.2 }))
         );
-        assert_eq!("auto".parse(), Ok(MarchChoice(March::Auto { beta: 0.3 })));
+        assert_eq!("auto".parse(), Ok(Chosen(March::Auto { beta: 0.3 })));
+        assert_eq!("sphere_tracing".parse(), Ok(Chosen(March::Sphere)));
+        assert_eq!(
+            "bent=7,bend=0.1".parse(),
+            Ok(Chosen(Occlusion::Bent {
+                steps: 7,
+                step: 0.1,
+                scale: 0.5,
+                bend: 0.1
+            }))
+        );
+        let (reach, steps) = (None, 9);
+        assert_eq!(
+            "cones=unlimited,steps=9".parse(),
+            Ok(Chosen(Occlusion::Cones { reach, steps }))
+        );
+        let (samples, filter) = (9, Filter::Tent);
+        assert_eq!(
+            "supersample=9,filter=tent".parse(),
+            Ok(Chosen(Antialias::Supersample { samples, filter }))
+        );
         assert_eq!("3..7".parse(), Ok(Frames(3..7)));
         assert_eq!("3..=7".parse(), Ok(Frames(3..8)));
         assert_eq!("y=-0.5".parse(), Ok(SectionPlane { axis: 1, at: -0.5 }));
@@ -225,9 +291,24 @@ mod tests {
             "auto=nan",
             "fixed=0",
             "fixed=inf",
+            "auto=0",
+            "enhanced=1",
+            "relaxed,omega",
+            "relaxed,beta=0.3",
+            "relaxed=1.2,omega=1.3",
+            "sphere,step=1",
+            "auto,",
         ] {
-            assert!(text.parse::<MarchChoice>().is_err(), "{text}");
+            assert!(text.parse::<Chosen<March>>().is_err(), "{text}");
         }
+        for text in ["quilez=2.5", "quilez=0", "cones=none", "cones=0"] {
+            assert!(text.parse::<Chosen<Occlusion>>().is_err(), "{text}");
+        }
+        assert!(
+            "supersample,filter=lanczos"
+                .parse::<Chosen<Antialias>>()
+                .is_err()
+        );
         for text in [
             "",
             "..",
@@ -259,5 +340,120 @@ mod tests {
             assert!(seconds(text).is_err() && positive(text).is_err(), "{text}");
         }
         assert!(positive("0").is_err() && positive("-1").is_err());
+    }
+
+    /// Whether a scene loads.
+    fn loads(name: &str, text: &str, language: Language) -> bool {
+        let mut options = Options::default();
+        options.limits.samples = u64::MAX;
+        load_text(name, text, language, None, &options).is_ok()
+    }
+
+    /// The scene language, JSON and the command line agree about a number of a method.
+    fn agree<T: Choice + Serialize>(
+        in_script: fn(&str) -> String,
+        in_json: fn(serde_json::Value) -> serde_json::Value,
+    ) -> usize {
+        let mut checked = 0;
+        for base in T::all() {
+            for param in base.method().params {
+                let Allowed { min, max, .. } = param.allowed;
+                let single = |x: f64, up: bool| match (x as f32, up) {
+                    (x, true) => f64::from(x.next_up()),
+                    (x, false) => f64::from(x.next_down()),
+                };
+                let numbers = match param.kind {
+                    Kind::Word(_) => continue,
+                    Kind::Whole => vec![min - 1.0, min, min + 1.0, max - 1.0, max, max + 1.0],
+                    Kind::Real | Kind::Limit => vec![
+                        -1.0,
+                        single(min, false),
+                        min,
+                        single(min, true),
+                        single(max, false),
+                        max,
+                        single(max, true),
+                        1e30,
+                    ],
+                };
+                for x in numbers {
+                    let (word, name) = (base.method().word, param.name);
+                    let text = match param.kind {
+                        Kind::Whole => format!("{x}"),
+                        _ => format!("{x:?}"),
+                    };
+                    let what = format!("{word}({name} = {text})");
+                    let value = match param.kind {
+                        Kind::Whole => Value::Whole(x.max(0.0) as u32),
+                        Kind::Limit => Value::Limit(Some(x as f32)),
+                        Kind::Real | Kind::Word(_) => Value::Real(x as f32),
+                    };
+                    let mut method = *base;
+                    assert!(method.put(name, value), "{what}");
+                    let json = in_json(serde_json::to_value(method).unwrap()).to_string();
+                    let flag = format!("{},{name}={text}", base.method().name);
+                    let right = param.value(x).is_ok();
+                    assert_eq!(
+                        loads("a.star", &in_script(&what), Language::Starlark),
+                        right,
+                        "{what}"
+                    );
+                    assert_eq!(loads("a.json", &json, Language::Json), right, "{json}");
+                    assert_eq!(flag.parse::<Chosen<T>>().is_ok(), right, "{flag}");
+                    checked += 1;
+                }
+            }
+        }
+        checked
+    }
+
+    #[test]
+    fn all_ways_to_write_a_method_agree_about_its_numbers() {
+        fn scene(settings: serde_json::Value, lights: serde_json::Value) -> serde_json::Value {
+            serde_json::json!({
+                "zeroset": 1,
+                "objects": [{"field": {"sphere": {"radius": 1}}}],
+                "settings": settings,
+                "lights": lights,
+            })
+        }
+        let plain = scene(serde_json::json!({}), serde_json::json!([]));
+        assert!(loads("a.json", &plain.to_string(), Language::Json));
+        let checked = [
+            agree::<March>(
+                |what| format!("show(sphere())\nrender(march = {what})"),
+                |method| scene(serde_json::json!({"march": method}), serde_json::json!([])),
+            ),
+            agree::<Occlusion>(
+                |what| format!("show(sphere())\nrender(ao = {what})"),
+                |method| {
+                    scene(
+                        serde_json::json!({"occlusion": method}),
+                        serde_json::json!([]),
+                    )
+                },
+            ),
+            agree::<Antialias>(
+                |what| format!("show(sphere())\nrender(aa = {what})"),
+                |method| {
+                    scene(
+                        serde_json::json!({"antialias": method}),
+                        serde_json::json!([]),
+                    )
+                },
+            ),
+            agree::<Shadow>(
+                |what| format!("show(sphere())\nsun(shadow = {what})"),
+                |method| {
+                    let light = serde_json::json!({
+                        "source": {"kind": "directional", "direction": [0, -1, 0]},
+                        "radiance": [1, 1, 1],
+                        "shadow": method,
+                    });
+                    scene(serde_json::json!({}), serde_json::json!([light]))
+                },
+            ),
+        ];
+        assert!(checked.iter().all(|n| *n > 5), "{checked:?}");
     }
 }

@@ -4,7 +4,8 @@ use std::fmt::Write;
 use std::path::PathBuf;
 use zeroset::catalogue::bounds::Exactness;
 use zeroset::catalogue::entries::catalogue;
-use zeroset::catalogue::{Info, Kind, LARGE, Unit};
+use zeroset::catalogue::{self, Info, LARGE, Unit};
+use zeroset::scene::methods::{GROUPS, Kind};
 
 fn number(x: f64, unit: Unit) -> String {
     let x = match unit {
@@ -41,8 +42,8 @@ fn entry(out: &mut String, info: &Info, says: &str) {
     for p in info.params {
         let defaults: Vec<String> = p.default.iter().map(|x| number(*x, p.unit)).collect();
         let default = match p.kind {
-            Kind::Number => defaults.concat(),
-            Kind::List(_) => "a list".into(),
+            catalogue::Kind::Number => defaults.concat(),
+            catalogue::Kind::List(_) => "a list".into(),
             _ => format!("({})", defaults.join(", ")),
         };
         writeln!(
@@ -75,10 +76,55 @@ fn section<'a>(out: &mut String, title: &str, entries: impl Iterator<Item = (&'a
     }
 }
 
+/// The methods of rendering, from their registry.
+fn methods(out: &mut String) {
+    out.push_str(
+        "## Methods\n\nOf each kind a rendering chooses one; the first is the default. `render(march = relaxed(1.4))` states one \
+         in a scene, `--march relaxed=1.4` on the command line, `{\"march\": {\"method\": \"relaxed\", \"omega\": 1.4}}` in JSON.\n\n",
+    );
+    for group in &GROUPS {
+        writeln!(out, "**{}** (`{}`)\n", group.title, group.key).unwrap();
+        for method in group.methods {
+            let word = match (group.is_called(), method.word == method.name) {
+                (true, true) => format!("`{}()`", method.word),
+                (true, false) => format!("`{}()`, `--{} {}`", method.word, group.key, method.name),
+                (false, _) => format!("`\"{}\"`", method.name),
+            };
+            writeln!(out, "### {word}\n\n{} ({})\n", method.doc, method.source).unwrap();
+            if method.params.is_empty() {
+                continue;
+            }
+            out.push_str(
+                "| parameter | default | range | unit | |\n| --- | --- | --- | --- | --- |\n",
+            );
+            for p in method.params {
+                let (range, unit) = match p.kind {
+                    Kind::Word(words) => {
+                        let words: Vec<_> =
+                            words.iter().map(|m| format!("`\"{}\"`", m.name)).collect();
+                        (words.join(", "), "")
+                    }
+                    Kind::Real | Kind::Whole | Kind::Limit => {
+                        (p.allowed.to_string(), p.unit.name())
+                    }
+                };
+                let default = p.written(p.default);
+                writeln!(
+                    out,
+                    "| `{}` | {default} | {range} | {unit} | {} |",
+                    p.name, p.doc
+                )
+                .unwrap();
+            }
+            out.push('\n');
+        }
+    }
+}
+
 fn page() -> String {
     let all = catalogue();
     let mut out = String::from(
-        "# Field reference\n\nGenerated from the catalogue: the same as `zeroset fields`. Lengths are scene units, angles \
+        "# Field reference\n\nGenerated from the catalogue of fields and the registry of methods: the same as `zeroset fields`. Lengths are scene units, angles \
          degrees, rates degrees a unit. *Exact* is the distance everywhere, *exact outside* a bound inside, a *bound* never \
          more than the distance, an *estimate* is not proven.\n\n",
     );
@@ -110,6 +156,7 @@ fn page() -> String {
         "Changes of space",
         all.maps.iter().map(|e| (&e.info, String::new())),
     );
+    methods(&mut out);
     out.truncate(out.trim_end().len());
     out.push('\n');
     out

@@ -24,7 +24,7 @@ fn toy(size: [u32; 2], samples: u32, work: f32) -> Job {
     let frame = Frame {
         size,
         samples,
-        filter_kind: 2,
+        filter_kind: Filter::Mitchell as u32,
         prepass: 1,
         ..Frame::default()
     };

@@ -2,6 +2,7 @@ use crate::{Counting, RenderInto, check, toy};
 use zeroset_gpu::{GpuError, testing};
 use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::render::{RenderError, Silent};
+use zeroset_scene::settings::Filter;
 
 #[test]
 fn a_picture_is_the_same_in_any_bands() {
@@ -48,7 +49,7 @@ fn a_film_gets_the_planes_that_it_has() {
         return;
     };
     let mut job = toy([50, 40], 0, 0.0);
-    (job.frame.prepass, job.frame.filter_kind) = (0, 0);
+    (job.frame.prepass, job.frame.filter_kind) = (0, Filter::Box as u32);
     let mut film = Film::with(50, 40, &[Plane::Depth]);
     renderer
         .render_into(&job, &mut film, &Silent)

@@ -68,7 +68,7 @@ fn natives() -> impl Iterator<Item = &'static Native> {
         math::ALL,
         materials::ALL,
         stage::ALL,
-        rendering::ALL,
+        rendering::all(),
         parameters::ALL,
     ]
     .into_iter()

@@ -25,8 +25,8 @@ const COLOR: Slot = slot("color", "\"white\"", "Its colour.");
 const STRENGTH: Slot = slot("strength", "1", "How strong it is.");
 const SHADOW: Slot = slot(
     "shadow",
-    "soft_closest(16)",
-    "hard(), soft(k), soft_closest(k) or none().",
+    "soft_closest()",
+    "How its shadow is found: a method of the group Shadows, or none().",
 );
 
 /// The functions.
@@ -156,19 +156,6 @@ impl Call<'_, '_> {
         Ok(DVec3::from(p))
     }
 
-    /// An occlusion method.
-    pub(crate) fn occlusion(&self, param: &str, given: Given) -> Run<Occlusion> {
-        if let Value::Thing(i) = given.value {
-            match self.machine.store.thing(i) {
-                Thing::Occlusion(occlusion) => return Ok(*occlusion),
-                Thing::Nothing => return Ok(Occlusion::None),
-                _ => {}
-            }
-        }
-        let wanted = "an occlusion method such as cones() or quilez(steps = 5)";
-        Err(self.unfit(param, wanted, given))
-    }
-
     /// States something that a scene has once.
     pub(crate) fn once(&mut self, what: &'static str) -> Run<()> {
         let Some(first) = self.machine.draft.stated.insert(what, self.place) else {
@@ -224,7 +211,7 @@ fn show(c: &mut Call<'_, '_>) -> Run<Value> {
         }
         None => (count + 1).to_string(),
     };
-    let occlusion = c.get("ao").map(|g| c.occlusion("ao", g)).transpose()?;
+    let occlusion = (c.get("ao").map(|_| c.method(Thing::occlusion))).transpose()?;
     let place = c.machine.draft.position(c.place);
     c.machine.grow(512 + name.len())?;
     c.machine.draft.objects.push(Object {
@@ -335,20 +322,7 @@ fn light(c: &mut Call<'_, '_>, source: Source) -> Run<Value> {
         1.0
     };
     let strength = c.number_or("strength", strength, 0.0, 1e6)? as f32;
-    let shadow = match c.get("shadow") {
-        None => Shadow::SoftClosest { sharpness: 16.0 },
-        Some(given) => {
-            let wanted = "a shadow such as soft(16)";
-            let Value::Thing(i) = given.value else {
-                return Err(c.unfit("shadow", wanted, given));
-            };
-            match c.machine.store.thing(i) {
-                Thing::Shadow(shadow) => *shadow,
-                Thing::Nothing => Shadow::None,
-                _ => return Err(c.unfit("shadow", wanted, given)),
-            }
-        }
-    };
+    let shadow = c.method(Thing::shadow)?;
     let radiance = c.colour_or("color", "white")? * strength;
     let lights = c.machine.draft.lights.get_or_insert_default();
     if lights.len() >= LIGHTS {

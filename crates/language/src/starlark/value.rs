@@ -11,6 +11,7 @@ use zeroset_catalogue::entries::{JoinEntry, MapEntry, ModifyEntry, PrimitiveEntr
 use zeroset_field::field::Field;
 use zeroset_field::formula::{Expression, Function};
 use zeroset_scene::material::{Material, Pattern};
+use zeroset_scene::methods::Choice;
 use zeroset_scene::settings;
 
 /// A value.
@@ -71,13 +72,45 @@ impl Thing {
             Thing::Field(_) => "a field",
             Thing::Material(_) => "a material",
             Thing::Pattern(_) => "a pattern",
-            Thing::March(_) => "a marching method",
-            Thing::Shadow(_) => "a shadow",
-            Thing::Occlusion(_) => "an occlusion method",
-            Thing::Antialias(_) => "an antialiasing method",
+            Thing::March(_) => settings::March::WHAT,
+            Thing::Shadow(_) => settings::Shadow::WHAT,
+            Thing::Occlusion(_) => settings::Occlusion::WHAT,
+            Thing::Antialias(_) => settings::Antialias::WHAT,
             Thing::Nothing => "none()",
             Thing::Orthographic(_) => "an orthographic lens",
             Thing::Expression(_) => "a value of a formula",
+        }
+    }
+
+    /// The marching method that it is, if it is one.
+    pub(crate) fn march(&self) -> Option<settings::March> {
+        match self {
+            Thing::March(march) => Some(*march),
+            _ => None,
+        }
+    }
+
+    /// The shadow that it is, if it is one.
+    pub(crate) fn shadow(&self) -> Option<settings::Shadow> {
+        match self {
+            Thing::Shadow(shadow) => Some(*shadow),
+            _ => None,
+        }
+    }
+
+    /// The occlusion method that it is, if it is one.
+    pub(crate) fn occlusion(&self) -> Option<settings::Occlusion> {
+        match self {
+            Thing::Occlusion(occlusion) => Some(*occlusion),
+            _ => None,
+        }
+    }
+
+    /// The antialiasing method that it is, if it is one.
+    pub(crate) fn antialias(&self) -> Option<settings::Antialias> {
+        match self {
+            Thing::Antialias(antialias) => Some(*antialias),
+            _ => None,
         }
     }
 }

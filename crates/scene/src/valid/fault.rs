@@ -1,6 +1,7 @@
 //! What is wrong with a scene, and where.
 
 use super::{OBJECTS, PIXELS};
+use crate::methods::Refused;
 use glam::Vec3;
 use std::fmt;
 
@@ -22,8 +23,11 @@ pub struct SceneError {
 }
 
 /// What is wrong with a value.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Fault {
+    /// A number of a method or of the settings that their registry refuses.
+    #[error("this {0}")]
+    Method(Refused),
     /// A number out of its range, or none at all.
     #[error("this is {}, allowed is {} to {}", Said(*.value), Said(*.min), Said(*.max))]
     Number {

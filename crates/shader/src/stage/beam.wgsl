@@ -29,11 +29,11 @@ struct Beam {
     samples: u32,
 }
 
-/// Looks from a surface along `to`, at most as far as `distance`. `kind` is that of a shadow: 1 hard, 2 soft (Tomczak 2012,
-/// algorithm 3.3), 3 soft with the closest place between two samples (Aaltonen 2018).
+/// Looks from a surface along `to`, at most as far as `distance`. `kind` is that of a shadow, one of `SHADOW_...`, which has a penumbra
+/// unless it is hard.
 fn look(at: Surface, to: vec3f, distance: f32, kind: u32, sharpness: f32) -> Beam {
     let origin = at.point + at.normal * at.offset;
-    let hard = kind == 1u;
+    let hard = kind == SHADOW_HARD;
     let width = select(1.0 / max(sharpness, 1e-20), 0.0, hard);
     // beside a loose bound penumbrae are seen where samples happen to be
     let close = is_close();
@@ -98,11 +98,16 @@ fn look(at: Surface, to: vec3f, distance: f32, kind: u32, sharpness: f32) -> Bea
     return Beam(select(light, 1.0, touched), t, steps);
 }
 
-/// How wide the way of a ray is for its length, after a sample `f` at `t`, a step of `z` behind one of radius `r`.
-fn penumbra(f: f32, z: f32, r: f32, t: f32, kind: u32) -> f32 {
-    if (kind == 3u && z > 0.0 && z <= r * 1.000001 && f < r && f >= 0.0) {
+/// How wide the way of a ray is for its length, at a sample `f` at `t` (Tomczak 2012, algorithm 3.3).
+fn penumbra_soft(f: f32, t: f32) -> f32 {
+    return f / max(t, 1e-20);
+}
+
+/// The same, at the closest place between this sample and one of radius `r` that is `z` before it (Aaltonen 2018).
+fn penumbra_closest(f: f32, z: f32, r: f32, t: f32) -> f32 {
+    if (z > 0.0 && z <= r * 1.000001 && f < r && f >= 0.0) {
         let before = max((z * z + f * f - r * r) / max(2.0 * z, 1e-20), 0.0);
         return sqrt(max(f * f - before * before, 0.0)) / max(t - before, 1e-20);
     }
-    return f / max(t, 1e-20);
+    return penumbra_soft(f, t);
 }

@@ -16,7 +16,7 @@ fn gather(@builtin(global_invocation_id) id: vec3u) {
     }
     var reach = 0;
     if (frame.samples != 0u) {
-        reach = i32(frame.filter_kind);
+        reach = filter_reach();
     }
     let last = vec2i(frame.size) - 1;
     for (var dy = -reach; dy <= reach; dy++) {

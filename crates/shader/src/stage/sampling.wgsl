@@ -67,21 +67,24 @@ fn cosine_direction(normal: vec3f, u: vec2f) -> vec3f {
     return around + normal * sqrt(max(1.0 - u.x, 0.0));
 }
 
-/// Weight of a sample along one axis, at `x` pixels from a pixel's middle. (Mitchell and Netravali 1988, equation 8, with
-/// B = C = 1/3.)
+/// Weight of a sample along one axis, at `x` pixels from a pixel's middle.
 fn filter_weight(x: f32) -> f32 {
-    let d = abs(x);
-    switch (frame.filter_kind) {
-        case 0u: {
-            return select(1.0, 0.0, d > 0.5);
-        }
-        case 1u: {
-            return max(1.0 - d, 0.0);
-        }
-        default: {
-            let near = ((d * 7.0 - 12.0) * d * d + 16.0 / 3.0) * (1.0 / 6.0);
-            let far = (((d * (-7.0 / 3.0) + 12.0) * d - 20.0) * d + 32.0 / 3.0) * (1.0 / 6.0);
-            return select(select(0.0, far, d < 2.0), near, d < 1.0);
-        }
-    }
+    return filter_at(abs(x));
+}
+
+/// One pixel wide, constant.
+fn filter_box(d: f32) -> f32 {
+    return select(1.0, 0.0, d > 0.5);
+}
+
+/// Two pixels wide, linear.
+fn filter_tent(d: f32) -> f32 {
+    return max(1.0 - d, 0.0);
+}
+
+/// Four pixels wide (Mitchell and Netravali 1988, equation 8, with B = C = 1/3).
+fn filter_mitchell(d: f32) -> f32 {
+    let near = ((d * 7.0 - 12.0) * d * d + 16.0 / 3.0) * (1.0 / 6.0);
+    let far = (((d * (-7.0 / 3.0) + 12.0) * d - 20.0) * d + 32.0 / 3.0) * (1.0 / 6.0);
+    return select(select(0.0, far, d < 2.0), near, d < 1.0);
 }

@@ -6,7 +6,7 @@ fn shadow(at: Surface, light: Light, to: vec3f, distance: f32) -> f32 {
         return 0.0;
     }
     // what is seen from inside the solid is lit as if there were no solid: else it would be dark
-    if (light.shadow == 0.0 || at.side < 0.0) {
+    if (u32(light.shadow) == SHADOW_NONE || at.side < 0.0) {
         return 1.0;
     }
     let beam = look(at, to, distance, u32(light.shadow), light.sharpness);

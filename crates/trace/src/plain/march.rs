@@ -212,7 +212,9 @@ impl Steady {
     fn new(march: March) -> Steady {
         let number = match march {
             March::Relaxed { omega } => omega,
-            _ => -1.0,
+            March::Fixed { .. } | March::Sphere | March::Enhanced { .. } | March::Auto { .. } => {
+                -1.0
+            }
         };
         Steady {
             march,
@@ -223,22 +225,34 @@ impl Steady {
 
     /// Whether samples between which there may be a surface are taken back.
     fn careful(&self) -> bool {
-        !matches!(self.march, March::Fixed { .. })
+        match self.march {
+            March::Fixed { .. } => false,
+            March::Sphere | March::Relaxed { .. } | March::Enhanced { .. } | March::Auto { .. } => {
+                true
+            }
+        }
     }
 
     /// A sample was taken back.
     fn fail(&mut self) {
         match self.march {
             March::Relaxed { .. } => self.number = 1.0,
-            _ => self.number = -1.0,
+            March::Auto { .. } => self.number = -1.0,
+            March::Fixed { .. } | March::Sphere | March::Enhanced { .. } => {}
         }
     }
 
     /// A sample was kept.
     fn pass(&mut self, z: f32, before: f32, r: f32) {
-        if let March::Auto { beta } = self.march {
-            let slope = ((r - before) / z.max(1e-20)).clamp(-1.0, 1.0);
-            self.number = (self.number + (slope - self.number) * beta).min(0.98);
+        match self.march {
+            March::Auto { beta } => {
+                let slope = ((r - before) / z.max(1e-20)).clamp(-1.0, 1.0);
+                self.number = (self.number + (slope - self.number) * beta).min(0.98);
+            }
+            March::Fixed { .. }
+            | March::Sphere
+            | March::Relaxed { .. }
+            | March::Enhanced { .. } => {}
         }
         self.last = Some((z, before));
     }

@@ -19,20 +19,14 @@ fn agree(settings: Settings) {
 
 #[test]
 fn normals() {
-    for normals in [
-        Normals::Tetrahedron,
-        Normals::Central,
-        Normals::Samples18,
-        Normals::Samples26,
-        Normals::Exact,
-    ] {
+    for normals in Normals::ALL {
         agree(Settings { normals, ..quick() });
     }
 }
 
 #[test]
 fn shading() {
-    for shading in [Shading::Phong, Shading::Lambert, Shading::LambertLegacy] {
+    for shading in Shading::ALL {
         agree(Settings { shading, ..quick() });
     }
 }

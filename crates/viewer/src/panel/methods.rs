@@ -1,18 +1,15 @@
 //! The methods of the papers, side by side.
 
 use crate::session::Session;
-use crate::widget::{aside, choose, choose_or, section, slide, switch};
+use crate::widget::{aside, choose, choose_or, real, section, slide, switch, whole};
 use eframe::egui::{Slider, Ui};
-use zeroset_scene::settings::{Antialias, Settings};
+use zeroset_scene::settings::Settings;
 
 /// What is seen of the film, and how bright.
 pub fn view(ui: &mut Ui, session: &mut Session) {
     let look = session.edited();
     choose(ui, "Show", &mut look.plane);
-    let slider = Slider::new(&mut look.settings.exposure, -6.0..=6.0)
-        .max_decimals(2)
-        .suffix(" EV");
-    slide(ui, "Exposure", "Stops brighter or darker.", slider);
+    real(ui, &Settings::EXPOSURE, &mut look.settings.exposure);
 }
 
 /// Every method that the edited look can have.
@@ -39,9 +36,6 @@ pub fn methods(ui: &mut Ui, session: &mut Session) {
     });
     section(ui, "Antialiasing", false, |ui| {
         choose(ui, "Edges", &mut look.settings.antialias);
-        if let Antialias::Supersample { filter, .. } = &mut look.settings.antialias {
-            choose(ui, "Filter", filter);
-        }
         let slider = Slider::new(&mut look.settings.seed, 0..=99);
         slide(
             ui,
@@ -71,17 +65,10 @@ pub fn methods(ui: &mut Ui, session: &mut Session) {
 
 /// When a ray has hit (Keinert et al. 2014, 3.2 to 3.4).
 fn hits(ui: &mut Ui, settings: &mut Settings) {
-    let slider = Slider::new(&mut settings.max_steps, 1..=2048).logarithmic(true);
-    slide(ui, "Most steps", "Steps that a ray may take.", slider);
-    let slider = Slider::new(&mut settings.footprint, 0.05..=4.0)
-        .logarithmic(true)
-        .max_decimals(2);
-    let about = "A hit is nearer to the surface than so many pixel widths.";
-    slide(ui, "Hit within", about, slider);
-    let slider = Slider::new(&mut settings.discontinuity_reduction, 0..=8);
-    let about =
-        "Steps that put a hit where its pixel meets the surface (Keinert et al. 2014, 3.4).";
-    slide(ui, "Hit repair", about, slider);
+    whole(ui, &Settings::MAX_STEPS, &mut settings.max_steps);
+    real(ui, &Settings::FOOTPRINT, &mut settings.footprint);
+    let reduction = &mut settings.discontinuity_reduction;
+    whole(ui, &Settings::DISCONTINUITY_REDUCTION, reduction);
     let about = "A ray that runs out of steps takes its best candidate (Keinert et al. 2014, 3.2).";
     switch(ui, "Hit selection", about, &mut settings.hit_selection);
 }

@@ -180,7 +180,7 @@ fn keys_do_what_the_list_says() {
     press(&mut harness, Key::Home);
     assert!(!harness.state().session().is_free);
     press(&mut harness, Key::V);
-    assert_eq!(harness.state().session().looks[0].plane, Plane::Steps);
+    assert_eq!(harness.state().session().looks[0].plane, Plane::Coverage);
     press(&mut harness, Key::X);
     assert!(harness.state().session().is_sliced);
     press(&mut harness, Key::C);

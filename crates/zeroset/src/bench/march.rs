@@ -5,6 +5,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use zeroset_scene::camera::Camera;
 use zeroset_scene::film::Plane;
+use zeroset_scene::methods::Choice;
 use zeroset_scene::render::{RenderError, Renderer, Silent};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, March, Occlusion, Settings};
@@ -27,17 +28,12 @@ pub(crate) struct Marches {
     pub missed_hits: BTreeMap<String, u64>,
 }
 
-/// The marchers side by side: all without the prepass, and the default with it.
-fn marchers() -> Vec<(&'static str, March, bool)> {
-    vec![
-        ("fixed", March::Fixed { step: 0.02 }, false),
-        ("sphere", March::Sphere, false),
-        ("relaxed", March::Relaxed { omega: 1.2 }, false),
-        ("enhanced", March::Enhanced { share: 0.9 }, false),
-        ("auto", March::Auto { beta: 0.3 }, false),
-        ("sphere+prepass", March::Sphere, true),
-        ("auto+prepass", March::Auto { beta: 0.3 }, true),
-    ]
+/// The marchers side by side: all without the prepass, then the plainest and the default with it.
+fn marchers() -> Vec<(String, March, bool)> {
+    let plain = March::ALL.map(|march| (march.method().name.to_owned(), march, false));
+    let with = [March::Sphere, March::default()];
+    let with = with.map(|march| (format!("{}+prepass", march.method().name), march, true));
+    plain.into_iter().chain(with).collect()
 }
 
 /// Measures a scene.
@@ -72,16 +68,17 @@ pub(crate) fn march(scene: &Scene) -> Result<Marches, RenderError> {
         let frame = renderer.render(&scene, &Silent)?;
         let e = frame.statistics.evaluations;
         let per_ray = (e.march + e.prepass) as f64 / found.rays as f64;
-        found.evaluations_per_ray.insert(name.into(), per_ray);
+        found.evaluations_per_ray.insert(name.clone(), per_ray);
         let depth = frame.film.plane(Plane::Depth);
         let missed = solid
             .iter()
             .zip(depth)
             .filter(|(solid, t)| **solid && !t.is_finite())
             .count();
-        found.missed_hits.insert(name.into(), missed as u64);
+        found.missed_hits.insert(name, missed as u64);
+        scene.edit(|s| s.settings.max_steps = Settings::default().max_steps)?;
     }
-    let sphere = found.evaluations_per_ray["sphere"];
+    let sphere = found.evaluations_per_ray[March::Sphere.method().name];
     found.share_of_sphere = found
         .evaluations_per_ray
         .iter()

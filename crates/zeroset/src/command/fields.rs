@@ -4,7 +4,7 @@ use crate::args::Fields;
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
 use crate::json;
-use crate::reference::{Entry, entries, limits, page, signature};
+use crate::reference::{Entry, entries, limits, methods, page, signature};
 use std::fmt::Write;
 
 /// Lists what there is, or explains one name.
@@ -19,6 +19,9 @@ pub(crate) fn run(args: &Fields, console: &Console) -> Result<(), Failure> {
     };
     if name == "limits" && !args.json {
         return console.print(&limits());
+    }
+    if name == "methods" && !args.json {
+        return console.emit(&methods());
     }
     let Some(entry) = entries.iter().find(|e| e.name == name) else {
         let help = match zeroset_language::report::nearest(name, entries.iter().map(|e| e.name)) {

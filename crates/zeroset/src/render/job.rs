@@ -74,9 +74,7 @@ impl<'a> Job<'a> {
     ) -> Result<Option<Failure>, Failure> {
         let _asking = Asking::begin();
         let mut scene = loaded.scene.clone();
-        if let Some(march) = self.args.march {
-            scene.edit(|parts| parts.settings.march = march.0)?;
-        }
+        self.args.methods.apply(&mut scene, &options.limits)?;
         let mut path = match &self.args.output {
             Some(path) => path.clone(),
             None => unnamed(&self.args.scene.scene, self.args.view, frame.is_some())?,

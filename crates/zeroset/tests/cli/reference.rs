@@ -42,3 +42,27 @@ fn every_example_of_a_shape_is_a_scene() {
     folder.write("scene.star", scene);
     folder.good("check scene.star");
 }
+
+#[test]
+fn methods_have_a_page_and_their_ranges() {
+    let folder = Folder::empty();
+    let page = folder.good("fields methods").out;
+    for text in [
+        "sphere (in scenes sphere_tracing)",
+        "Keinert et al. 2014",
+        "above 0 to 1, default 0.3",
+        "mitchell",
+    ] {
+        assert!(page.contains(text), "no `{text}` in {page}");
+    }
+    let share = folder.good("fields enhanced --json").json()["parameters"][0].clone();
+    assert_eq!(
+        (&share["max"], &share["is_below"]),
+        (&1.0.into(), &true.into())
+    );
+    let page = folder.good("fields supersample").out;
+    assert!(
+        page.contains("\"mitchell\" or \"tent\" or \"box\""),
+        "{page}"
+    );
+}
