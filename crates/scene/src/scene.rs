@@ -165,8 +165,8 @@ impl Scene {
     pub fn has_field_of(&self, other: &Scene) -> bool {
         let same =
             |(a, b): (&Object, &Object)| a.field.key() == b.field.key() && a.material == b.material;
-        self.objects.len() == other.objects.len()
-            && self.objects.iter().zip(&other.objects).all(same)
+        self.objects().len() == other.objects().len()
+            && self.objects().iter().zip(other.objects()).all(same)
     }
 
     /// All objects as one field: their union, each painted with its material (where no part of it is painted already) and

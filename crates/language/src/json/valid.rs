@@ -65,7 +65,6 @@ pub(super) fn occlusion(occlusion: &Occlusion, limits: &Limits) -> Read<()> {
 }
 
 pub(super) fn settings(settings: &Settings, limits: &Limits) -> Read<()> {
-    use methods::Value::{Real, Whole};
     check_size(settings.size, limits).map_err(|m| problem(m).at("size"))?;
     read(valid::settings(settings, samples(limits)))
 }
