@@ -427,8 +427,9 @@ pub(crate) const SAMPLES: Allowed = Allowed::between(1.0, (1 << 20) as f64);
 pub(crate) type Limit = Option<f32>;
 
 /// Defines a choice: an enum, and what [`Choice`] says of it. A variant is written as
-/// `Name("name" as "word in the language", "Title", "source") { field: type = default, param }`, its doc and those of its
-/// fields being what people read of them. The first variant is the default.
+/// `Name("name" as "word in the language", "Title", "source") { field: type = default, param; ... }`, its doc and those of
+/// its fields being what people read of them. The type of a field is `f32`, `u32`, `Limit`, or another choice whose methods
+/// have no parameters. The first variant is the default.
 macro_rules! choice {
     (
         $(#[$meta:meta])*
@@ -454,6 +455,12 @@ macro_rules! choice {
                 $variant $({
                     $(
                         $(#[doc = $about])+
+                        #[doc = ""]
+                        #[doc = concat!(
+                            "Default: `",
+                            stringify!($default),
+                            "`. Range and unit: see [`METHODS`](crate::methods::Choice::METHODS)."
+                        )]
                         $(#[serde($($serde)*)])?
                         $field: $type,
                     )+

@@ -15,7 +15,7 @@ choice! {
         },
         /// Steps as far as they would go if the surface were flat.
         Enhanced("enhanced", "Enhanced", "Bálint and Valasek 2018") {
-            /// How much of the planar guess is taken; at 1 rounding decides whether a flat face is passed.
+            /// How much of the planar guess is taken; at 1 spheres only touch, and rounding decides.
             share: f32 = 0.9, Param::new("Share", Unit::Ratio, Allowed::below(0.0, 1.0)).usual(0.1, 0.99)
         },
         /// Steps longer by a factor, taken back where they went too far.

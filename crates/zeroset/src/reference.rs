@@ -242,6 +242,9 @@ fn word(word: Word) -> Entry {
     }
 }
 
+/// What takes whole numbers only.
+const WHOLE: &str = "whole number";
+
 /// A parameter of a method of rendering.
 fn number(param: &methods::Param) -> Parameter {
     let is_word = matches!(param.kind, methods::Kind::Word(_));
@@ -250,7 +253,7 @@ fn number(param: &methods::Param) -> Parameter {
         name: param.name,
         kind: Some(match param.kind {
             methods::Kind::Real => "number".to_owned(),
-            methods::Kind::Whole => "whole number".to_owned(),
+            methods::Kind::Whole => WHOLE.to_owned(),
             methods::Kind::Limit => "number, or nothing for no limit".to_owned(),
             methods::Kind::Word(words) => either(words),
         }),

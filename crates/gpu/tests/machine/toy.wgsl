@@ -65,9 +65,9 @@ fn is_cut_short() -> bool {
         light_sums[to].colour = vec3f(0.0);
         light_sums[to].weight = 0.0;
     }
-    // the rows that the band stores beside those that it gives: two, for the widest filter
+    // the rows that the band stores beside those that it gives: two where samples are filtered, for the widest filter
     let last = frame.band.x + frame.band.y - 1u;
-    let below = samples[(min(p.y + 2u, last) - frame.band.x) * frame.size.x + p.x].colour.y;
+    let below = samples[(min(p.y + select(0u, 2u, frame.samples != 0u), last) - frame.band.x) * frame.size.x + p.x].colour.y;
     light_sums[to].colour += vec3f(samples[source].colour.x, below, samples[source].colour.z);
     light_sums[to].weight += 1.0;
     surface_sums[to].depth = samples[source].depth;

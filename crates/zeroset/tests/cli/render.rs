@@ -127,18 +127,19 @@ fn an_exr_shows_what_a_png_shows() {
 #[test]
 fn methods_are_chosen_by_flags() {
     let folder = Folder::with(BALL);
-    let flags = "--march fixed=0.1 --normals central --shadow none --ao bent=3,bend=0.5 --aa none --shading lambert";
+    let flags = "--march fixed=0.125 --normals central --shadow none --ao bent=3,bend=0.5 --aa none --shading lambert";
     let command = format!("render scene.star --size 16x12 --json {flags}");
     let settings = folder.good(&command).json()["settings"].clone();
-    assert_eq!(settings["march"]["step"].as_f64(), Some(f64::from(0.1f32)));
+    assert_eq!(settings["march"]["step"], 0.125);
     assert_eq!(settings["normals"], "central");
     assert_eq!(settings["occlusion"]["steps"], 3);
     assert_eq!(settings["occlusion"]["bend"], 0.5);
     assert_eq!(settings["antialias"]["method"], "none");
     assert_eq!(settings["shading"], "lambert");
-    folder
-        .good("render scene.star --size 16x12 -o lit.png --view shadow --shadow none --no-legend");
-    folder.good("render scene.star --size 16x12 -o own.png --view shadow --no-legend");
+    folder.write("floor.star", "show(sphere().move(y = 1))\nshow(plane())\n");
+    let command = "render floor.star --size 32x24 --view shadow --no-legend";
+    folder.good(&format!("{command} -o lit.png --shadow none"));
+    folder.good(&format!("{command} -o own.png"));
     let found = folder.good("compare lit.png own.png --json").json();
     assert!(found["largest"].as_f64().unwrap() > 0.5, "{found}");
 }
