@@ -8,4 +8,5 @@ pub mod placement;
 pub mod program;
 mod proof;
 pub mod repetition;
+pub mod shape;
 pub mod text;
