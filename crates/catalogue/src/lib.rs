@@ -5,6 +5,21 @@
 //! the evaluators, the shaders and the tests all iterate that list.
 //!
 //! 2D shapes are fields that ignore `z`: they become solids by `extrude` and `revolve`.
+//!
+//! ```
+//! use zeroset_catalogue::entries::catalogue;
+//!
+//! let torus = catalogue().primitive("torus").ok_or("no such shape")?;
+//! let names: Vec<&str> = torus.info.params.iter().map(|p| p.name).collect();
+//! assert_eq!(names, ["radius", "tube"]);
+//!
+//! // what an entry says of itself at parameters: a box, its steepness, what is inside
+//! let params = [2.0, 0.5];
+//! assert_eq!((torus.bounds)(&params).max, [2.5, 0.5, 2.5]);
+//! assert_eq!((torus.lipschitz)(&params), 1.0);
+//! assert!((torus.contains)(&params, [2.0, 0.2, 0.0]));
+//! # Ok::<(), &str>(())
+//! ```
 
 use crate::bounds::{Aabb, Exactness};
 use zeroset_number::{Args, Real, Vec2, Vec3, length2, v2, v3};

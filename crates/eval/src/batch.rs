@@ -26,7 +26,7 @@ pub struct Workspace {
     /// Value lanes; the first three are the points.
     pub(super) lanes: Vec<Lane>,
     /// Four lanes a number: value and gradient.
-    duals: Vec<Lane>,
+    pub(super) duals: Vec<Lane>,
     pub(super) marks: super::marks::MarkLanes,
     result: usize,
     result_dual: usize,
@@ -80,6 +80,19 @@ impl Workspace {
         &self.duals[self.result_dual]
     }
 
+    /// Takes the points as those to differentiate at.
+    pub(super) fn begin_gradients(&mut self, tape: Tape<'_>) {
+        for k in 0..3 {
+            self.duals[4 * k] = self.lanes[k];
+            for j in 0..3 {
+                self.duals[4 * k + 1 + j]
+                    .0
+                    .fill(if j == k { 1.0 } else { 0.0 });
+            }
+        }
+        self.result_dual = 4 * usize::from(tape.code.result);
+    }
+
     /// What [`gradients`] found at point number `i`: the value and the derivatives along x, y and z.
     pub fn gradient(&self, i: usize) -> (f32, [f32; 3]) {
         let gradient = self.gradients().each_ref().map(|lane| lane.0[i]);
@@ -105,26 +118,18 @@ pub fn values<S: Simd>(s: S, tape: Tape<'_>, w: &mut Workspace, n: usize) {
 
 /// As [`values`], with the gradient. The points are those of [`Workspace::points_mut`].
 pub fn gradients<S: Simd>(s: S, tape: Tape<'_>, w: &mut Workspace, n: usize) {
-    for k in 0..3 {
-        w.duals[4 * k] = w.lanes[k];
-        for j in 0..3 {
-            w.duals[4 * k + 1 + j]
-                .0
-                .fill(if j == k { 1.0 } else { 0.0 });
-        }
-    }
-    w.result_dual = 4 * usize::from(tape.code.result);
+    w.begin_gradients(tape);
     run_gradients(s.level(), tape, &mut w.duals, n);
 }
 
 // Not generic, so that the kernels are compiled once, in this crate.
 #[inline(never)]
-fn run_values(level: Level, tape: Tape<'_>, lanes: &mut [Lane], n: usize) {
+pub(super) fn run_values(level: Level, tape: Tape<'_>, lanes: &mut [Lane], n: usize) {
     zeroset_number::at_level!(level, s => run::<_, Lanes<_>>(s, tape, lanes, n))
 }
 
 #[inline(never)]
-fn run_gradients(level: Level, tape: Tape<'_>, lanes: &mut [Lane], n: usize) {
+pub(super) fn run_gradients(level: Level, tape: Tape<'_>, lanes: &mut [Lane], n: usize) {
     zeroset_number::at_level!(level, s => run::<_, Dual<Lanes<_>>>(s, tape, lanes, n))
 }
 

@@ -4,6 +4,19 @@
 //! neither the desktop nor the caller suffers: a picture is dispatched in tiles of milliseconds, in bands that fit into
 //! memory; every wait ends; every failure of a driver is a [`GpuError`], so that a caller can go on with the CPU.
 //!
+//! ```
+//! use zeroset_gpu::{Choice, GpuRenderer, adapters};
+//!
+//! let (all, _automatic) = adapters();
+//! for adapter in all {
+//!     println!("{}", adapter.name);
+//! }
+//! match GpuRenderer::new(&Choice::Any) {
+//!     Ok(_renderer) => println!("rendering on the GPU"),
+//!     Err(error) => println!("rendering on the CPU: {error}"),
+//! }
+//! ```
+//!
 //! | module | holds |
 //! | --- | --- |
 //! | `adapter` | what adapters there are and which one is taken |

@@ -6,6 +6,18 @@
 //! - [`format`](mod@format): PNG and OpenEXR;
 //! - [`view`]: every plane of a film as a picture;
 //! - [`compare`]: how different two pictures are.
+//!
+//! ```
+//! use zeroset_output::format::{Notes, png};
+//! use zeroset_output::picture::Picture;
+//!
+//! // sRGB-coded colours, 0 to 1, from column and row
+//! let picture = Picture::from_fn(16, 8, |x, y| [x as f32 / 15.0, y as f32 / 7.0, 0.5]);
+//! let mut bytes = Vec::new();
+//! png::write(&mut bytes, &picture, png::Depth::Eight, &Notes::new("colours"))?;
+//! assert!(bytes.starts_with(b"\x89PNG"));
+//! # Ok::<(), std::io::Error>(())
+//! ```
 
 pub mod atomic;
 pub mod compare;

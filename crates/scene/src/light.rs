@@ -32,6 +32,20 @@ pub struct Light {
     pub shadow: Shadow,
 }
 
+impl Light {
+    /// The sun: light from infinitely far that travels along `direction`, which is normalised here, with a hard shadow. `radiance` is
+    /// its linear colour times its intensity.
+    pub fn sun(direction: Vec3, radiance: Vec3) -> Light {
+        Light {
+            source: Source::Directional {
+                direction: direction.normalize_or_zero(),
+            },
+            radiance,
+            shadow: Shadow::Hard,
+        }
+    }
+}
+
 /// What rays see that hit nothing, and what lights the scene from everywhere.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]

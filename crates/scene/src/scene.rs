@@ -24,6 +24,19 @@ pub struct Object {
     pub place: Option<(String, u32, u32)>,
 }
 
+impl Object {
+    /// A field with a name and the scene's first material.
+    pub fn new(name: impl Into<String>, field: Field) -> Object {
+        Object {
+            name: name.into(),
+            field,
+            material: 0,
+            occlusion: None,
+            place: None,
+        }
+    }
+}
+
 /// What a scene is made of, unchecked.
 #[derive(Clone, Debug, Default)]
 pub struct SceneParts {

@@ -2,6 +2,25 @@
 //!
 //! A module is put together from the recorded field ([`zeroset_field`]), the stage files in `stage/` (each named like its
 //! twin of the CPU renderer) and structs that are declared once, in [`layout`].
+//!
+//! ```
+//! use zeroset_field::shape::sphere;
+//! use zeroset_scene::material::Material;
+//! use zeroset_scene::scene::{Object, SceneParts};
+//! use zeroset_shader::export;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let parts = SceneParts {
+//!     name: "ball".into(),
+//!     objects: vec![Object::new("ball", sphere(1.0).field()?)],
+//!     materials: vec![Material::default()],
+//!     ..SceneParts::default()
+//! };
+//! let text = export::wgsl(&parts.build()?)?;
+//! assert!(text.starts_with("// ball: a signed distance field"));
+//! # Ok(())
+//! # }
+//! ```
 
 pub mod entry;
 pub mod export;

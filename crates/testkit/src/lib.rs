@@ -2,6 +2,13 @@
 //! known from mathematics, golden pictures, a search for phantom surfaces.
 //!
 //! No product crate depends on this one.
+//!
+//! ```
+//! use zeroset_testkit::scenes;
+//!
+//! // every scene of the repository, for tests that hold for all of them
+//! assert!(scenes::all().iter().any(|path| scenes::name(path).ends_with("hello")));
+//! ```
 
 pub mod conform;
 pub mod scenes;

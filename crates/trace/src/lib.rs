@@ -1,4 +1,29 @@
 //! The CPU renderer: sphere tracing in SIMD streams.
+//!
+//! ```
+//! use zeroset_field::shape::sphere;
+//! use zeroset_scene::film::Plane;
+//! use zeroset_scene::material::Material;
+//! use zeroset_scene::render::{Renderer, Silent};
+//! use zeroset_scene::scene::{Object, SceneParts};
+//! use zeroset_trace::CpuRenderer;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let parts = SceneParts {
+//!     objects: vec![Object::new("ball", sphere(1.0).field()?)],
+//!     materials: vec![Material::default()],
+//!     ..SceneParts::default() // the camera stands at (0, 0, 5)
+//! };
+//! let scene = parts.build()?.with_size([32, 24])?;
+//!
+//! // the picture is bit-equal whatever the number of threads; `None` takes all of them
+//! let film = CpuRenderer::new(Some(2))?.render(&scene, &Silent)?.film;
+//! let depth = film.plane(Plane::Depth)[12 * 32 + 16];
+//! assert!((depth - 4.0).abs() < 0.02);
+//! assert_eq!(film.plane(Plane::Coverage)[0], 0.0); // the corner shows the sky
+//! # Ok(())
+//! # }
+//! ```
 
 mod ao;
 mod beam;

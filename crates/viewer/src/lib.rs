@@ -12,6 +12,16 @@
 //! | [`clock`] | the time of an animation |
 //! | [`slice`](mod@slice), [`pick`] | a plane through the field; what is under the cursor |
 //! | [`app`] | the window itself |
+//!
+//! ```
+//! use zeroset_scene::camera::Camera;
+//! use zeroset_viewer::rig::Rig;
+//!
+//! // a hand turns the camera around what it looks at: half a turn to the left shows the other side
+//! let mut rig = Rig::new(&Camera::default(), None);
+//! rig.orbit(std::f64::consts::PI, 0.0);
+//! assert!((rig.camera().eye.z + 5.0).abs() < 1e-4);
+//! ```
 
 pub mod app;
 pub mod clock;

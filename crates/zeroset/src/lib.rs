@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | [`number`] | number types that formulas are evaluated over |
 //! | [`catalogue`] | the formulas of shapes, maps, modifiers and joins |
+//! | [`shape`] | shapes as they are written in Rust: functions, methods, operators |
 //! | [`field`] | field trees, and the programs that they compile to |
 //! | [`eval`] | evaluators of programs |
 //! | [`scene`] | scenes, films, and what a renderer is |
@@ -15,7 +16,24 @@
 //! | [`output`] | pictures and files |
 //! | [`section`] | fields on a plane |
 //!
-//! A scene becomes a picture in four steps:
+//! A shape is written as in a scene file, and evaluated wherever one wants to know it:
+//!
+//! ```
+//! use zeroset::eval::Evaluator;
+//! use zeroset::field::program::{Limits, Program};
+//! use zeroset::glam::{Vec3, vec3};
+//! use zeroset::shape::{box3, sphere};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let shape = sphere(1.0).translate(vec3(0.0, 1.0, 0.0)) | box3([3.0, 0.2, 3.0]).round(0.05);
+//! let program = Program::compile(&shape.field()?, &Limits::default())?;
+//! let (value, gradient) = Evaluator::new(program.values()).gradient(vec3(0.0, 4.0, 0.0));
+//! assert_eq!((value, gradient), (2.0, Vec3::Y));
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! A scene file becomes a picture in four steps; `examples/` has more:
 //!
 //! ```
 //! use zeroset::output::{atomic, format, picture::Picture};
@@ -43,6 +61,9 @@
 //! ```
 
 pub mod section;
+
+pub use glam;
+pub use zeroset_field::shape;
 
 pub use zeroset_catalogue as catalogue;
 pub use zeroset_eval as eval;
