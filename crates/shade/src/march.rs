@@ -71,6 +71,13 @@ pub fn behind<R: Real>(size: R) -> R {
     size * (-0.5 * ROUNDING)
 }
 
+/// Where the line through the values at both ends of a part of a ray is zero, as a share of it: false position.
+#[inline(always)]
+pub fn root<R: Real>(above: R, below: R) -> R {
+    let above = above.max(0.0);
+    (above / (above - below).max(1e-30)).clamp01()
+}
+
 /// The slope of a field along a ray between two values, `z` apart: a distance changes by at most 1 per unit.
 #[inline(always)]
 pub fn rise<R: Rough>(before: R, after: R, z: R) -> R {

@@ -18,12 +18,24 @@ pub fn sobol(index: u32) -> [u32; 2] {
     [index.reverse_bits(), second]
 }
 
+/// The numbers of the generator: factor and summand of its congruential step.
+pub const PCG: [u32; 2] = [1_664_525, 1_013_904_223];
+
+/// What the seeds of a pixel's hits are apart: 2^32 over the golden ratio.
+pub const HIT_SEEDS: u32 = 0x9e37_79b9;
+
+/// The seed of what is random at the hit of ray number `index` of a pixel: not that of the pixel's own samples.
+#[inline(always)]
+pub fn hit_seed(seed: u32, index: u32) -> u32 {
+    seed ^ (index + 1).wrapping_mul(HIT_SEEDS)
+}
+
 /// Two random numbers of a pixel: the generator pcg3d (Jarzynski and Olano 2020).
 #[inline(always)]
 pub fn scramble(x: u32, y: u32, seed: u32) -> [u32; 2] {
     let mut v = [x, y, seed].map(
         #[inline(always)]
-        |c| c.wrapping_mul(1_664_525).wrapping_add(1_013_904_223),
+        |c| c.wrapping_mul(PCG[0]).wrapping_add(PCG[1]),
     );
     for _ in 0..2 {
         v[0] = v[0].wrapping_add(v[1].wrapping_mul(v[2]));
@@ -37,10 +49,13 @@ pub fn scramble(x: u32, y: u32, seed: u32) -> [u32; 2] {
     [v[0], v[1]]
 }
 
+/// One over the numbers that [`unit`] tells apart: as many as single precision has.
+pub const UNIT: f32 = 1.0 / 16_777_216.0;
+
 /// A fraction of 2^32 as a number in [0, 1).
 #[inline(always)]
 pub fn unit(x: u32) -> f32 {
-    (x >> 8) as f32 * (1.0 / 16_777_216.0)
+    (x >> 8) as f32 * UNIT
 }
 
 /// Sample number `index` of a pixel, in [0, 1) by [0, 1).

@@ -3,9 +3,11 @@
 //! A module is put together from the recorded field ([`zeroset_field`]), the stage files in `stage/` (each named like its
 //! twin of the CPU renderer) and structs that are declared once, in [`layout`].
 
+mod constants;
 pub mod entry;
 pub mod export;
 mod field;
+mod formulas;
 pub mod job;
 pub mod layout;
 mod source;

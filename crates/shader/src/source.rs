@@ -1,18 +1,17 @@
-//! The text of a shader module: the recorded field and the stages that a scene needs.
+//! The text of a shader module: the recorded field, the recorded formulas and the stages that a scene needs.
 
+use crate::constants;
 use crate::entry::{Binding, UNIFORM_NUMBERS, UNIFORM_ROWS};
 use crate::field::FieldSource;
+use crate::formulas;
 use crate::job::{FieldForm, LONGEST_COMPILED};
 use crate::layout::{
     Frame, Light, LightSum, Material, Occluder, Sample, Shared, SurfaceSum, Tile, loader, rows,
 };
 use std::collections::BTreeSet;
 use std::fmt::Write;
-use std::sync::{Arc, LazyLock};
-use zeroset_catalogue::noise::gradient_noise;
+use std::sync::Arc;
 use zeroset_field::program::{Program, Structure};
-use zeroset_number::record::{Argument, Recorder};
-use zeroset_number::wgsl;
 use zeroset_scene::material::Pattern;
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{March, Normals, Occlusion, Shading, Shadow};
@@ -179,7 +178,12 @@ impl Key {
         text += &loader::<Light>();
         text += &loader::<Occluder>();
         text += &loader::<Material>();
+        text += &constants::declarations();
         text += &field.text;
+        for name in self.formulas() {
+            text.push('\n');
+            text += formulas::text(name);
+        }
         for stage in self.stages() {
             text.push('\n');
             text += stage;
@@ -216,9 +220,6 @@ impl Key {
             3 => include_str!("stage/march_enhanced.wgsl"),
             _ => include_str!("stage/march_auto.wgsl"),
         });
-        if self.normals != Normals::Exact {
-            stages.push(include_str!("stage/normal.wgsl"));
-        }
         match self.normals {
             Normals::Exact => stages.push(include_str!("stage/normal_exact.wgsl")),
             Normals::Tetrahedron => stages.push(include_str!("stage/normal_tetrahedron.wgsl")),
@@ -234,66 +235,73 @@ impl Key {
         } else {
             include_str!("stage/distance.wgsl")
         });
-        let shadows = self.shadows.iter().any(|&kind| kind != 0);
-        if shadows || self.occlusion.iter().any(|kind| HEMISPHERES.contains(kind)) {
+        if self.has_beams() {
             stages.push(include_str!("stage/beam.wgsl"));
         }
-        stages.push(if shadows {
+        stages.push(if self.has_shadows() {
             include_str!("stage/shadow.wgsl")
         } else {
             include_str!("stage/shadow_none.wgsl")
         });
-        stages.push(match self.shading {
-            Shading::Phong => include_str!("stage/shade_phong.wgsl"),
-            Shading::Lambert => include_str!("stage/shade_lambert.wgsl"),
-            Shading::LambertLegacy => include_str!("stage/shade_legacy.wgsl"),
-        });
         stages.extend(
             self.occlusion
                 .iter()
-                .filter_map(|&kind| Some(OCCLUSION[kind as usize]?.0)),
+                .filter_map(|&k| OCCLUSION[k as usize].stage),
         );
         stages.extend(
             self.patterns
                 .iter()
-                .filter_map(|&kind| Some(PATTERNS[kind as usize]?.1)),
+                .filter_map(|&k| PATTERNS[k as usize].stage),
         );
-        if self.patterns.contains(&PATTERN_NOISE) {
-            stages.push(noise());
-        }
         stages
+    }
+
+    fn has_shadows(&self) -> bool {
+        self.shadows.iter().any(|&kind| kind != 0)
+    }
+
+    /// Whether rays are sent from surfaces.
+    fn has_beams(&self) -> bool {
+        self.has_shadows() || self.occlusion.iter().any(|kind| HEMISPHERES.contains(kind))
+    }
+
+    /// The formulas that those stages call.
+    fn formulas(&self) -> BTreeSet<&'static str> {
+        let mut names = BTreeSet::from(EVERYWHERE);
+        names.extend(match self.shading {
+            Shading::Phong => ["light_response@Phong", "surface_colour@Phong"],
+            Shading::Lambert => ["light_response@Lambert", "surface_colour@Lambert"],
+            // the surface answers alike
+            Shading::LambertLegacy => ["light_response@LambertLegacy", "surface_colour@Lambert"],
+        });
+        if self.march == MARCH_ENHANCED {
+            names.insert("planar_step");
+        }
+        if self.normals != Normals::Exact {
+            names.insert("sample_step");
+        }
+        if self.has_beams() {
+            names.extend(BEAMS);
+        }
+        for &kind in &self.occlusion {
+            names.extend(OCCLUSION[kind as usize].formulas);
+        }
+        for &kind in &self.patterns {
+            names.extend(PATTERNS[kind as usize].formulas);
+        }
+        names
     }
 
     /// The function that tells patterns apart.
     fn pattern_colour(&self) -> String {
-        let cases = self.patterns.iter().filter_map(|&kind| {
-            let (name, _) = PATTERNS[kind as usize]?;
-            Some(format!(
-                "        case {kind}u: {{\n            return {name}(m, at);\n        }}\n"
-            ))
-        });
-        switch(
-            "fn pattern_colour(m: Material, at: Place) -> vec3f",
-            "m.kind",
-            cases.collect(),
-            "m.a",
-        )
+        let signature = "fn pattern_colour(m: Material, at: Place) -> vec3f";
+        switch(signature, "m.kind", &self.patterns, &PATTERNS)
     }
 
     /// The function that tells occlusion methods apart.
     fn occlusion(&self) -> String {
-        let cases = self.occlusion.iter().filter_map(|&kind| {
-            let (_, call) = OCCLUSION[kind as usize]?;
-            Some(format!(
-                "        case {kind}u: {{\n            return {call};\n        }}\n"
-            ))
-        });
-        switch(
-            "fn occlusion(at: Surface, how: Occluder, key: vec2u) -> Openness",
-            "how.kind",
-            cases.collect(),
-            "Openness(1.0, at.normal)",
-        )
+        let signature = "fn occlusion(at: Surface, how: Occluder, key: vec2u) -> Openness";
+        switch(signature, "how.kind", &self.occlusion, &OCCLUSION)
     }
 }
 
@@ -333,8 +341,15 @@ fn table_at(i: u32) -> vec4f {
 }
 ";
 
-/// A function that returns `otherwise` but in some cases.
-fn switch(signature: &str, kind: &str, cases: String, otherwise: &str) -> String {
+/// A function that tells methods apart by their numbers; the first of them is the default.
+fn switch(signature: &str, kind: &str, used: &BTreeSet<u32>, methods: &[Method]) -> String {
+    let otherwise = methods[0].call;
+    let cases: String = (used.iter().filter(|&&k| k != 0))
+        .map(|&k| {
+            let call = methods[k as usize].call;
+            format!("        case {k}u: {{\n            return {call};\n        }}\n")
+        })
+        .collect();
     if cases.is_empty() {
         return format!("\n{signature} {{\n    return {otherwise};\n}}\n");
     }
@@ -343,75 +358,143 @@ fn switch(signature: &str, kind: &str, cases: String, otherwise: &str) -> String
     )
 }
 
-/// The noise of procedural materials, recorded from the field's.
-fn noise() -> &'static str {
-    static NOISE: LazyLock<String> = LazyLock::new(|| {
-        let recorder = Recorder::new();
-        let value = gradient_noise(recorder.point("p"));
-        let function = recorder
-            .function("gradient_noise", &[("p", Argument::Vec3)], &[value])
-            .expect("a formula of the point alone has no unknown input");
-        wgsl::print(&function)
-    });
-    &NOISE
-}
-
 const MARCH_FIXED: u32 = 0;
-const PATTERN_NOISE: u32 = 3;
+const MARCH_ENHANCED: u32 = 3;
 /// Occlusion methods that send rays.
 const HEMISPHERES: [u32; 2] = [6, 7];
 
-/// Stage and call of every occlusion method, by its number.
-const OCCLUSION: [Option<(&str, &str)>; 8] = [
-    None,
-    Some((
-        include_str!("stage/ao_quilez.wgsl"),
-        "Openness(ao_quilez(at, how), at.normal)",
-    )),
-    Some((
-        include_str!("stage/ao_bent.wgsl"),
-        "Openness(ao_bent(at, how), at.normal)",
-    )),
-    Some((
-        include_str!("stage/ao_evans.wgsl"),
-        "Openness(ao_evans(at, how), at.normal)",
-    )),
-    Some((
-        include_str!("stage/ao_upward.wgsl"),
-        "Openness(ao_upward(at, how), at.normal)",
-    )),
-    Some((include_str!("stage/ao_cones.wgsl"), "ao_cones(at, how)")),
-    Some((
-        include_str!("stage/ao_hemisphere.wgsl"),
-        "Openness(ao_hemisphere(at, how, key), at.normal)",
-    )),
-    Some((
-        include_str!("stage/ao_obscurance.wgsl"),
-        "Openness(ao_obscurance(at, how, key), at.normal)",
-    )),
+/// Formulas that every picture needs.
+const EVERYWHERE: [&str; 19] = [
+    "false_position",
+    "on_plane",
+    "pinhole_ray",
+    "across_plane",
+    "cone_slope",
+    "enter_box",
+    "leave_box",
+    "view_narrowness",
+    "width_of_pixel",
+    "radius_of_footprint",
+    "behind_surface",
+    "smoothed_slope",
+    "slope_step",
+    "filter_box",
+    "filter_tent",
+    "filter_mitchell",
+    "footprint_on",
+    "sky_colour",
+    "towards_point",
 ];
 
-/// Function and stage of every pattern that is more than one colour, by its number.
-const PATTERNS: [Option<(&str, &str)>; 7] = [
-    None,
-    Some((
-        "pattern_checker",
-        include_str!("stage/pattern_checker.wgsl"),
-    )),
-    Some((
-        "pattern_stripes",
-        include_str!("stage/pattern_stripes.wgsl"),
-    )),
-    Some(("pattern_noise", include_str!("stage/pattern_noise.wgsl"))),
-    Some((
-        "pattern_gradient",
-        include_str!("stage/pattern_gradient.wgsl"),
-    )),
-    Some((
-        "pattern_triplanar",
-        include_str!("stage/pattern_triplanar.wgsl"),
-    )),
-    Some(("pattern_orbit", include_str!("stage/pattern_orbit.wgsl"))),
+/// Those of `stage/beam.wgsl`.
+const BEAMS: [&str; 5] = [
+    "slope_between",
+    "secondary_step",
+    "skin_touch",
+    "soft_shadow",
+    "closest_shadow",
+];
+
+/// One of several methods: the number that shaders know it by is its place in the list.
+struct Method {
+    /// What calls it.
+    call: &'static str,
+    /// The formulas that it needs.
+    formulas: &'static [&'static str],
+    /// Its stage, where it is more than a formula.
+    stage: Option<&'static str>,
+}
+
+/// Occlusion methods, by their numbers.
+const OCCLUSION: [Method; 8] = [
+    Method {
+        call: "Openness(1.0, at.normal)",
+        formulas: &[],
+        stage: None,
+    },
+    Method {
+        call: "Openness(ao_quilez(at, how), at.normal)",
+        formulas: &["visibility"],
+        stage: Some(include_str!("stage/ao_quilez.wgsl")),
+    },
+    Method {
+        call: "Openness(ao_bent(at, how), at.normal)",
+        formulas: &["visibility"],
+        stage: Some(include_str!("stage/ao_bent.wgsl")),
+    },
+    Method {
+        call: "Openness(ao_evans(at, how), at.normal)",
+        formulas: &["exponential_visibility"],
+        stage: Some(include_str!("stage/ao_evans.wgsl")),
+    },
+    Method {
+        call: "Openness(visibility(slant(at.normal), how.scale), at.normal)",
+        formulas: &["visibility", "slant"],
+        stage: None,
+    },
+    Method {
+        call: "ao_cones(at, how)",
+        formulas: &[
+            "slope_between",
+            "secondary_step",
+            "skin_touch",
+            "cone_direction",
+            "turn_cone",
+            "cone_clear",
+            "cone_left",
+            "cone_share",
+        ],
+        stage: Some(include_str!("stage/ao_cones.wgsl")),
+    },
+    Method {
+        call: "Openness(ao_hemisphere(at, how, key), at.normal)",
+        formulas: &["cosine_direction"],
+        stage: Some(include_str!("stage/ao_hemisphere.wgsl")),
+    },
+    Method {
+        call: "Openness(ao_obscurance(at, how, key), at.normal)",
+        formulas: &["cosine_direction", "obscurance"],
+        stage: Some(include_str!("stage/ao_obscurance.wgsl")),
+    },
+];
+
+/// Patterns, by their numbers.
+const PATTERNS: [Method; 7] = [
+    Method {
+        call: "m.a",
+        formulas: &[],
+        stage: None,
+    },
+    Method {
+        call: "pattern_checker(at.point, at.normal, at.footprint, m.a, m.b, m.size)",
+        formulas: &["pattern_checker"],
+        stage: None,
+    },
+    Method {
+        call: "pattern_stripes(at.point, at.normal, at.footprint, m.a, m.b, m.c, m.size)",
+        formulas: &["pattern_stripes"],
+        stage: None,
+    },
+    Method {
+        call: "pattern_noise(at.point, at.footprint, m.a, m.b, m.size, m.detail)",
+        formulas: &["pattern_noise"],
+        stage: None,
+    },
+    Method {
+        call: "pattern_gradient(at.point, m.a, m.b, m.c, m.d)",
+        formulas: &["pattern_gradient"],
+        stage: None,
+    },
+    Method {
+        call: "pattern_triplanar(m, at)",
+        formulas: &["projection_weights", "projection"],
+        stage: Some(include_str!("stage/pattern_triplanar.wgsl")),
+    },
+    Method {
+        call: "pattern_orbit(at.orbit, m.a, m.b, m.c, m.d)",
+        formulas: &["pattern_orbit"],
+        stage: None,
+    },
 ];
 
 /// Number of a marcher in shaders.

@@ -19,7 +19,7 @@ use zeroset_scene::settings::{Antialias, Filter, Occlusion, Shading};
 use zeroset_shade::light::{arrival, towards};
 use zeroset_shade::march::MARKS_BEHIND;
 use zeroset_shade::pattern::{Place, colour as pattern_colour};
-use zeroset_shade::sampling::{point, scramble};
+use zeroset_shade::sampling::{hit_seed, point, scramble};
 use zeroset_shade::sky::{SkyColours, colour as sky};
 use zeroset_shade::surface::{Lighting, LocalMaterial, colour};
 use zeroset_shade::view::View;
@@ -212,7 +212,7 @@ impl<'a> Job<'a> {
                     area.y as u32 + order::Y[pixel] as u32,
                 );
                 // not the random numbers of the pixel's samples
-                let key = scramble(x, y, seed ^ (index + 1).wrapping_mul(0x9e37_79b9));
+                let key = scramble(x, y, hit_seed(seed, index));
                 (q.scramble[0][i], q.scramble[1][i]) = (key[0], key[1]);
             }
         }

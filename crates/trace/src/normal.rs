@@ -10,7 +10,7 @@ use zeroset_eval::{BATCH, Lane, Workspace};
 use zeroset_field::program::FLAT;
 use zeroset_number::{Lanes, Ops, Real, Vec3, v3};
 use zeroset_scene::settings::Normals;
-use zeroset_shade::march::{MIDDLE, REFINEMENTS, SETTLED};
+use zeroset_shade::march::{MIDDLE, REFINEMENTS, SETTLED, root};
 use zeroset_shade::normal::{CENTRAL, NEIGHBOURS_18, NEIGHBOURS_26, TETRAHEDRON, step};
 
 /// Vectors of rays go on together while more than this share of them moves.
@@ -93,9 +93,8 @@ fn near<S: Simd>(s: S, solid: &Solid<'_>, hits: &Hits, i: usize) -> Lanes<S> {
 /// Where a line through the values at both ends of the part of a ray is zero, from its beginning.
 #[inline(always)]
 fn zero<S: Simd>(s: S, hits: &Hits, i: usize) -> Lanes<S> {
-    let (f, behind) = (load(s, &hits.f, i).max(0.0), load(s, &hits.behind, i));
-    let share = f / (f - behind).max(1e-30);
-    load(s, &hits.beyond, i) * share.clamp01()
+    let share = root(load(s, &hits.f, i), load(s, &hits.behind, i));
+    load(s, &hits.beyond, i) * share
 }
 
 /// The next guess of where the sign changes, from the beginning of the part of a ray.

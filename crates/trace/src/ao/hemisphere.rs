@@ -8,7 +8,7 @@ use std::ops::Range;
 use zeroset_number::lanes::LaneMask;
 use zeroset_number::{Lanes, Ops, Vec3};
 use zeroset_shade::occlusion::obscurance;
-use zeroset_shade::sampling::{cosine_direction, sobol};
+use zeroset_shade::sampling::{UNIT, cosine_direction, sobol};
 
 /// A ray that counts the more, the farther it gets: see [`obscurance`].
 #[derive(Clone, Copy)]
@@ -70,9 +70,8 @@ impl<S: Simd> Aim<S> for Around<'_> {
             Lanes::<S>(u.to_float::<S::f32s>()),
             Lanes::<S>(v.to_float::<S::f32s>()),
         );
-        let unit = 1.0 / 16_777_216.0;
         (
-            cosine_direction(normal, u * unit, v * unit),
+            cosine_direction(normal, u * UNIT, v * UNIT),
             splat(s, self.reach),
         )
     }
