@@ -4,5 +4,6 @@
 //! No product crate depends on this one.
 
 pub mod conform;
+pub mod plain;
 pub mod scenes;
 pub mod wgsl;

@@ -9,7 +9,7 @@ use zeroset_scene::camera::{Camera, Lens};
 use zeroset_scene::light::{Light, Sky, Source};
 use zeroset_scene::material::Material;
 use zeroset_scene::scene::{Object, Scene};
-use zeroset_scene::settings::{Settings, Shadow};
+use zeroset_scene::settings::{Antialias, Normals, Occlusion, Settings, Shadow};
 
 fn shape(name: &str, params: &[f64]) -> Field {
     let entry = catalogue().primitive(name).expect("in the catalogue");
@@ -57,6 +57,22 @@ pub fn sphere_box_ground() -> Scene {
         .expect("a view"),
         settings: Settings::default(),
     }
+}
+
+/// The scene of the frame benchmark: soft shadows, five samples of occlusion, a ray a pixel.
+pub fn frame() -> Scene {
+    let mut scene = sphere_box_ground();
+    scene.settings = Settings {
+        occlusion: Occlusion::Quilez {
+            steps: 5,
+            step: 0.12,
+            scale: 1.5,
+        },
+        antialias: Antialias::None,
+        normals: Normals::Exact,
+        ..scene.settings
+    };
+    scene
 }
 
 /// A city of boxes on a grid with varied heights.

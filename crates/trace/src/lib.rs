@@ -11,7 +11,6 @@ mod march;
 mod marcher;
 mod normal;
 mod order;
-pub mod plain;
 mod planes;
 mod primary;
 mod renderer;

@@ -1,8 +1,9 @@
-//! The same algorithms, one ray at a time, in plain code: the reference that the stream is tested against and the baseline
-//! of its benchmark.
+//! The algorithms of the CPU renderer, one ray at a time, in plain code: the reference that the stream is tested against and the
+//! baseline of its benchmark.
 //!
-//! It shares the formulas of cameras, filters, patterns and light with the stream. All that the stream does in its own way
-//! is written anew here: marching (without cones), hits, normals, occlusion, shadows, samples and their filter.
+//! It shares the formulas of cameras, filters, patterns and light with the stream (`zeroset_shade`), and the constants of what
+//! marches. All that the stream does in its own way is written anew here: marching (without cones), hits, normals, occlusion,
+//! shadows, samples and their filter.
 
 mod ao;
 pub mod dense;
@@ -24,17 +25,17 @@ use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Filter, Settings};
 use zeroset_shade::march::MARKS_BEHIND;
 use zeroset_shade::pattern::{Place, colour as pattern_colour};
-use zeroset_shade::sampling::{point, radius, scramble, weight};
+use zeroset_shade::sampling::{hit_seed, point, radius, scramble, weight};
 use zeroset_shade::skin::has_skins;
 use zeroset_shade::sky::{SkyColours, colour as sky};
 use zeroset_shade::surface::{Lighting, LocalMaterial, colour};
 use zeroset_shade::view::{Region, View};
 
-pub(crate) fn glam(v: zeroset_number::Vec3<f32>) -> Vec3 {
+fn glam(v: zeroset_number::Vec3<f32>) -> Vec3 {
     Vec3::new(v.x, v.y, v.z)
 }
 
-pub(crate) fn field(v: Vec3) -> zeroset_number::Vec3<f32> {
+fn field(v: Vec3) -> zeroset_number::Vec3<f32> {
     v3(v.x, v.y, v.z)
 }
 
@@ -192,11 +193,7 @@ impl Plain<'_> {
             offset,
             d,
         };
-        let key = scramble(
-            x,
-            y,
-            self.settings.seed ^ (index + 1).wrapping_mul(0x9e37_79b9),
-        );
+        let key = scramble(x, y, hit_seed(self.settings.seed, index));
         // inside a solid there is no sky: it is shown as if there were no solid
         let (open, bent) = if side < 0.0 {
             (1.0, normal)
