@@ -1,26 +1,6 @@
 //! From linear light to what a file stores: the sRGB curve, and dithering.
 
-/// The sRGB value (0 to 1) of linear light (IEC 61966-2-1). What is brighter than 1 becomes 1, what is not a number 0.
-pub fn encode(linear: f32) -> f32 {
-    if linear >= 1.0 {
-        1.0
-    } else if linear > 0.003_130_8 {
-        1.055 * linear.powf(1.0 / 2.4) - 0.055
-    } else if linear > 0.0 {
-        12.92 * linear
-    } else {
-        0.0
-    }
-}
-
-/// The linear light of an sRGB value (IEC 61966-2-1).
-pub fn decode(coded: f32) -> f32 {
-    if coded <= 0.040_45 {
-        coded / 12.92
-    } else {
-        ((coded + 0.055) / 1.055).powf(2.4)
-    }
-}
+pub use zeroset_shade::tone::{decode, encode};
 
 /// The nearest of 256 levels, dithered: between two levels, the share of pixels that take the upper one is how near the
 /// value is to it, so that a slow gradient shows no bands. The pattern is interleaved gradient noise (Jimenez 2014), fixed

@@ -104,7 +104,7 @@ fn ends_at_skin(field: &mut Point<'_, Dual<F64>>, within: &Aabb, number: usize) 
 /// A value below this touches something: `offset` is how far a ray began from its surface, `size` the sum of the coordinates
 /// there.
 #[inline(always)]
-pub fn touch<R: Real<Scalar = f32>>(offset: R, size: R) -> R {
+pub fn touch<R: Real>(offset: R, size: R) -> R {
     (offset * (1.0 / 1024.0)).max(size * (4.0 * ROUNDING))
 }
 

@@ -1,7 +1,7 @@
 //! Rays through pixels, how wide a pixel is along them, and the part of a ray that can meet the scene.
 
 use zeroset_catalogue::bounds::Aabb;
-use zeroset_number::{Real, Vec3, v3};
+use zeroset_number::{Real, Vec2, Vec3, v2, v3};
 use zeroset_scene::camera::{Camera, Lens};
 
 /// Evaluations in single precision are off by about this share of the largest coordinate.
@@ -9,17 +9,17 @@ pub const ROUNDING: f32 = 4.0 * f32::EPSILON;
 
 /// A number that grows evenly along a ray: `slope * t + constant`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Linear {
+pub struct Linear<C = f32> {
     /// Growth per unit of `t`.
-    pub slope: f32,
+    pub slope: C,
     /// Value at 0.
-    pub constant: f32,
+    pub constant: C,
 }
 
-impl Linear {
+impl<C> Linear<C> {
     /// The value at `t`.
     #[inline(always)]
-    pub fn at<R: Real<Scalar = f32>>(self, t: R) -> R {
+    pub fn at<R: Real<Scalar = C>>(self, t: R) -> R {
         t * self.slope + self.constant
     }
 }
@@ -106,8 +106,7 @@ impl View {
     #[inline(always)]
     pub fn narrow<R: Real<Scalar = f32>>(&self, ray: Vec3<R>) -> R {
         if self.pinhole {
-            let [x, y, z] = self.back;
-            (ray.x * x + ray.y * y + ray.z * z).sq()
+            narrowness(ray, vector(self.back))
         } else {
             ray.x.lit(1.0)
         }
@@ -124,47 +123,25 @@ impl View {
     /// The radius of the footprint at distance `t` of a ray that is that [`narrow`](View::narrow).
     #[inline(always)]
     pub fn near<R: Real<Scalar = f32>>(&self, t: R, narrow: R) -> R {
-        self.footprint(1.0).at(t * narrow) + self.rounding.at(t)
+        footprint(t, narrow, self.footprint(1.0), self.rounding)
     }
 
     /// The width of a pixel at distance `t` of a ray that is that [`narrow`](View::narrow): the side of a square of its area.
     #[inline(always)]
     pub fn width<R: Real<Scalar = f32>>(&self, t: R, narrow: R) -> R {
-        // area cos^3 a: the square root of that, with the square of the cosine given
-        self.pixel.at(t * (narrow * narrow.sqrt()).sqrt())
-    }
-
-    /// A place on the picture, in pixels from the top left corner, in units of the plane at distance 1 (pinhole) or of the
-    /// scene (orthographic).
-    #[inline(always)]
-    fn plane<R: Real<Scalar = f32>>(&self, x: R, y: R) -> (R, R) {
-        (
-            (x - self.half[0]) * self.scale,
-            -(y - self.half[1]) * self.scale,
-        )
+        pixel_width(t, narrow, self.pixel)
     }
 
     /// What of the ray through (`x`, `y`) pixels differs from ray to ray: the direction (pinhole) or the origin.
     #[inline(always)]
     pub fn ray<R: Real<Scalar = f32>>(&self, x: R, y: R) -> Vec3<R> {
-        let (u, v) = self.plane(x, y);
+        let q = on_plane(v2(x, y), v2(self.half[0], self.half[1]), self.scale);
+        let (right, up) = (vector(self.right), vector(self.up));
         if self.pinhole {
-            self.slant(u, v).normalize()
+            pinhole_ray(q, right, up, vector(self.back))
         } else {
-            self.across(u, v, self.eye)
+            across(q, right, up, vector(self.eye))
         }
-    }
-
-    /// The direction through (`u`, `v`) on the plane at distance 1, not normalised.
-    #[inline(always)]
-    fn slant<R: Real<Scalar = f32>>(&self, u: R, v: R) -> Vec3<R> {
-        self.across(u, v, self.back.map(|c| -c))
-    }
-
-    /// The place (`u`, `v`) on the plane of the picture, from `origin`.
-    #[inline(always)]
-    fn across<R: Real<Scalar = f32>>(&self, u: R, v: R, origin: [f32; 3]) -> Vec3<R> {
-        constant(u, self.right) * u + constant(u, self.up) * v + constant(u, origin)
     }
 
     /// Origin and direction from what [`View::ray`] gave.
@@ -183,21 +160,85 @@ impl View {
     /// The slope is the tangent of the largest angle to a corner: one to an edge would leave the corners out.
     #[inline(always)]
     pub fn cone<R: Real<Scalar = f32>>(&self, x: R, y: R, reach: f32) -> (R, f32) {
-        let (u, v) = self.plane(x, y);
-        let e = reach * self.scale;
         if !self.pinhole {
-            return (u.lit(0.0), e * std::f32::consts::SQRT_2);
+            return (x.lit(0.0), reach * self.scale * std::f32::consts::SQRT_2);
         }
-        // for axis a and corner a + d: tan = |a x d| / (a . a + a . d), with a = (u, v, 1) in the camera's axes
-        let square = u.sq() + v.sq() + 1.0;
-        let mut slope = u.lit(0.0);
-        for (du, dv) in [(e, e), (e, -e), (-e, e), (-e, -e)] {
-            let dot = u * du + v * dv;
-            let cross = (square * (2.0 * e * e) - dot.sq()).max(0.0).sqrt();
-            slope = slope.max(cross / (square + dot).max(1e-6));
-        }
-        (slope, 0.0)
+        let q = on_plane(v2(x, y), v2(self.half[0], self.half[1]), self.scale);
+        (cone_slope(q, reach * self.scale), 0.0)
     }
+}
+
+/// A place on the picture, `at` in pixels from the top left corner of a picture of `half` the size, in units of the plane at
+/// distance 1 (pinhole) or of the scene (orthographic). `scale` is the side of a pixel there.
+#[inline(always)]
+pub fn on_plane<R: Real>(at: Vec2<R>, half: Vec2<R::Scalar>, scale: R::Scalar) -> Vec2<R> {
+    v2((at.x - half.x) * scale, -(at.y - half.y) * scale)
+}
+
+/// The direction of a ray from the eye through `q` on the plane at distance 1.
+#[inline(always)]
+pub fn pinhole_ray<R: Real>(
+    q: Vec2<R>,
+    right: Vec3<R::Scalar>,
+    up: Vec3<R::Scalar>,
+    back: Vec3<R::Scalar>,
+) -> Vec3<R> {
+    across(q, right, up, -back).normalize()
+}
+
+/// The place `q` on the plane of the picture, from `origin`.
+#[inline(always)]
+pub fn across<R: Real>(
+    q: Vec2<R>,
+    right: Vec3<R::Scalar>,
+    up: Vec3<R::Scalar>,
+    origin: Vec3<R::Scalar>,
+) -> Vec3<R> {
+    let [right, up, origin] = [right, up, origin].map(
+        #[inline(always)]
+        |c| v3(q.x.like(c.x), q.x.like(c.y), q.x.like(c.z)),
+    );
+    right * q.x + up * q.y + origin
+}
+
+/// See [`View::narrow`]: the square of the cosine between a ray and the view.
+#[inline(always)]
+pub fn narrowness<R: Real>(d: Vec3<R>, back: Vec3<R::Scalar>) -> R {
+    d.dot(back).sq()
+}
+
+/// The width of a pixel at distance `t`, see [`View::width`].
+#[inline(always)]
+pub fn pixel_width<R: Real>(t: R, narrow: R, pixel: Linear<R::Scalar>) -> R {
+    // area cos^3 a: the square root of that, with the square of the cosine given
+    pixel.at(t * (narrow * narrow.sqrt()).sqrt())
+}
+
+/// The radius of a footprint at distance `t`, see [`View::near`].
+#[inline(always)]
+pub fn footprint<R: Real>(
+    t: R,
+    narrow: R,
+    footprint: Linear<R::Scalar>,
+    rounding: Linear<R::Scalar>,
+) -> R {
+    footprint.at(t * narrow) + rounding.at(t)
+}
+
+/// The slope of a cone around the ray through `q` on the plane at distance 1 that holds all rays through the square of `e` around
+/// it: the tangent of the largest angle to a corner. (One to an edge would leave the corners out.)
+#[inline(always)]
+pub fn cone_slope<R: Real>(q: Vec2<R>, e: R::Scalar) -> R {
+    // for axis a and corner a + d: tan = |a x d| / (a . a + a . d), with a = (u, v, 1) in the camera's axes
+    let square = q.x.sq() + q.y.sq() + 1.0;
+    let mut slope = q.x.lit(0.0);
+    for (right, up) in [(true, true), (true, false), (false, true), (false, false)] {
+        let (du, dv) = (if right { e } else { -e }, if up { e } else { -e });
+        let dot = q.x * du + q.y * dv;
+        let cross = (square * (e * 2.0 * e) - dot.sq()).max(0.0).sqrt();
+        slope = slope.max(cross / (square + dot).max(1e-6));
+    }
+    slope
 }
 
 /// A box that holds the whole solid, in single precision.
@@ -236,30 +277,64 @@ impl Region {
     /// `c t - d`, with `d` the distance to the plane at the start.
     #[inline(always)]
     pub fn leave<R: Real<Scalar = f32>>(&self, o: Vec3<R>, d: Vec3<R>, slope: R, constant: R) -> R {
-        let mut end = o.x.lit(f32::INFINITY);
-        let (o, d) = (o.array(), d.array());
-        for k in 0..3 {
-            let backwards = d[k].negative();
-            let depth = R::select(backwards, o[k] - self.min[k], -o[k] + self.max[k]);
-            let gain = d[k].abs() - slope;
-            let t = (depth + constant) / gain.max(1e-12);
-            end = R::select(gain.above(1e-12), end.min(t), end);
-        }
-        end.max(0.0)
+        leave(vector(self.min), vector(self.max), o, d, slope, constant)
     }
 
     /// Up to this `t` the ray is farther from the box than `slope * t + constant`. Zero where it starts near it.
     #[inline(always)]
     pub fn enter<R: Real<Scalar = f32>>(&self, o: Vec3<R>, d: Vec3<R>, slope: R, constant: R) -> R {
-        let mut start = o.x.lit(0.0);
-        let (o, d) = (o.array(), d.array());
-        for k in 0..3 {
-            let backwards = d[k].negative();
-            let gap = R::select(backwards, o[k] - self.max[k], -o[k] + self.min[k]);
-            start = start.max((gap - constant) / (d[k].abs() + slope).max(1e-12));
-        }
-        start.min(f32::MAX)
+        enter(vector(self.min), vector(self.max), o, d, slope, constant)
     }
+}
+
+/// See [`Region::leave`].
+#[inline(always)]
+pub fn leave<R: Real>(
+    min: Vec3<R::Scalar>,
+    max: Vec3<R::Scalar>,
+    o: Vec3<R>,
+    d: Vec3<R>,
+    slope: R,
+    constant: R,
+) -> R {
+    let mut end = o.x.lit(f32::INFINITY);
+    let (min, max) = (min.array(), max.array());
+    let (o, d) = (o.array(), d.array());
+    for k in 0..3 {
+        let backwards = d[k].negative();
+        let depth = R::select(backwards, o[k] - min[k], -o[k] + max[k]);
+        let gain = d[k].abs() - slope;
+        let t = (depth + constant) / gain.max(1e-12);
+        end = R::select(gain.above(1e-12), end.min(t), end);
+    }
+    end.max(0.0)
+}
+
+/// See [`Region::enter`].
+#[inline(always)]
+pub fn enter<R: Real>(
+    min: Vec3<R::Scalar>,
+    max: Vec3<R::Scalar>,
+    o: Vec3<R>,
+    d: Vec3<R>,
+    slope: R,
+    constant: R,
+) -> R {
+    let mut start = o.x.lit(0.0);
+    let (min, max) = (min.array(), max.array());
+    let (o, d) = (o.array(), d.array());
+    for k in 0..3 {
+        let backwards = d[k].negative();
+        let gap = R::select(backwards, o[k] - max[k], -o[k] + min[k]);
+        start = start.max((gap - constant) / (d[k].abs() + slope).max(1e-12));
+    }
+    start.min(f32::MAX)
+}
+
+/// Three numbers as a vector of parameters.
+#[inline(always)]
+fn vector([x, y, z]: [f32; 3]) -> Vec3<f32> {
+    v3(x, y, z)
 }
 
 /// `c` as numbers of the company of `x`.

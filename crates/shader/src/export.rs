@@ -202,6 +202,8 @@ fn body(scene: &Scene) -> Result<String, ExportError> {
     let _ = writeln!(text, "const PIVOT: f32 = {};", number(pivot(&parts.frame)));
     text += &parts.key.picture().text;
     text.push('\n');
+    text += crate::formulas::text("srgb");
+    text.push('\n');
     text += include_str!("stage/picture.wgsl");
     Ok(text)
 }

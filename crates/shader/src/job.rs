@@ -16,6 +16,7 @@ use zeroset_scene::material::{self, Pattern};
 use zeroset_scene::render::RenderError;
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Filter, March, Occlusion, Shadow};
+use zeroset_shade::light::luminance;
 use zeroset_shade::skin::has_skins;
 use zeroset_shade::view::{Region, View};
 
@@ -374,7 +375,7 @@ fn light_row(light: &zeroset_scene::light::Light) -> Light {
         place: place.to_array(),
         kind,
         radiance: c.to_array(),
-        luminance: 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z,
+        luminance: luminance(c.to_array()),
         shadow: number(&light.shadow) as f32,
         sharpness,
         ..Light::default()

@@ -22,9 +22,11 @@
 //! # }
 //! ```
 
+mod constants;
 pub mod entry;
 pub mod export;
 mod field;
+mod formulas;
 pub mod job;
 pub mod layout;
 mod source;

@@ -1,7 +1,9 @@
-//! The text of a shader module: the recorded field and the stages that a scene needs.
+//! The text of a shader module: the recorded field, the recorded formulas and the stages that a scene needs.
 
+use crate::constants;
 use crate::entry::{Binding, UNIFORM_NUMBERS, UNIFORM_ROWS};
 use crate::field::FieldSource;
+use crate::formulas;
 use crate::job::{FieldForm, LONGEST_COMPILED};
 use crate::layout::{
     Frame, Light, LightSum, Material, Occluder, Sample, Shared, SurfaceSum, Tile, loader, rows,
@@ -9,11 +11,8 @@ use crate::layout::{
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 use std::fmt::Write;
-use std::sync::{Arc, LazyLock};
-use zeroset_catalogue::noise::gradient_noise;
+use std::sync::Arc;
 use zeroset_field::program::{Program, Structure};
-use zeroset_number::record::{Argument, Recorder};
-use zeroset_number::wgsl;
 use zeroset_scene::material::Pattern;
 use zeroset_scene::methods::Choice;
 use zeroset_scene::scene::Scene;
@@ -43,7 +42,7 @@ pub(crate) struct Key {
     uniform_table: bool,
     march: &'static [Stage],
     normals: &'static [Stage],
-    shading: Stage,
+    shading: Shading,
     occlusion: BTreeSet<Case>,
     /// Whether any light casts a shadow.
     shadows: bool,
@@ -55,6 +54,8 @@ pub(crate) struct Key {
 struct Stage {
     name: &'static str,
     text: &'static str,
+    /// The formulas that it needs, beside those of every picture.
+    formulas: &'static [&'static str],
 }
 
 impl PartialEq for Stage {
@@ -73,10 +74,11 @@ impl std::hash::Hash for Stage {
 
 /// A stage from the file that has its name.
 macro_rules! stage {
-    ($name:literal) => {
+    ($name:literal $(, $formula:literal)*) => {
         Stage {
             name: $name,
             text: include_str!(concat!("stage/", $name, ".wgsl")),
+            formulas: &[$($formula),*],
         }
     };
 }
@@ -85,17 +87,13 @@ macro_rules! stage {
 #[derive(Clone, Copy, Debug)]
 struct Case {
     kind: u32,
-    stage: Stage,
+    /// Its stage, where it is more than a formula.
+    stage: Option<Stage>,
     call: &'static str,
-    /// What else it needs.
-    needs: Needs,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Needs {
-    Nothing,
-    Beams,
-    Noise,
+    /// The formulas that it needs.
+    formulas: &'static [&'static str],
+    /// Whether it sends rays over hemispheres.
+    beams: bool,
 }
 
 impl PartialEq for Case {
@@ -140,7 +138,7 @@ impl Key {
             structure,
             march: marcher(&scene.settings().march),
             normals: normals(scene.settings().normals),
-            shading: shading(scene.settings().shading),
+            shading: scene.settings().shading,
             occlusion: methods.filter_map(occlusion).collect(),
             shadows: scene.lights().iter().any(|l| casts(&l.shadow)),
             patterns: (scene.materials().iter())
@@ -252,7 +250,12 @@ impl Key {
         text += &loader::<Light>();
         text += &loader::<Occluder>();
         text += &loader::<Material>();
+        text += &constants::declarations();
         text += &field.text;
+        for name in self.formulas() {
+            text.push('\n');
+            text += formulas::text(name);
+        }
         for stage in self.stages() {
             text.push('\n');
             text += stage;
@@ -283,7 +286,7 @@ impl Key {
             include_str!("stage/shade.wgsl"),
             include_str!("stage/trace.wgsl"),
         ];
-        let chosen = self.march.iter().chain(self.normals).chain([&self.shading]);
+        let chosen = self.march.iter().chain(self.normals);
         stages.extend(chosen.map(|stage| stage.text));
         stages.push(if self.steep {
             include_str!("stage/distance_steep.wgsl")
@@ -299,22 +302,32 @@ impl Key {
             include_str!("stage/shadow_none.wgsl")
         });
         let cases = self.occlusion.iter().chain(&self.patterns);
-        stages.extend(cases.map(|case| case.stage.text));
-        if self.needs(Needs::Noise) {
-            stages.push(noise());
-        }
+        stages.extend(cases.filter_map(|case| Some(case.stage?.text)));
         stages
-    }
-
-    /// Whether any of its methods needs this.
-    fn needs(&self, what: Needs) -> bool {
-        let mut cases = self.occlusion.iter().chain(&self.patterns);
-        cases.any(|case| case.needs == what)
     }
 
     /// Whether rays go to lights or over hemispheres.
     fn beams(&self) -> bool {
-        self.shadows || self.needs(Needs::Beams)
+        self.shadows || self.occlusion.iter().any(|case| case.beams)
+    }
+
+    /// The formulas that those stages call.
+    fn formulas(&self) -> BTreeSet<&'static str> {
+        let mut names = BTreeSet::from(EVERYWHERE);
+        names.extend(match self.shading {
+            Shading::Phong => ["light_response@Phong", "surface_colour@Phong"],
+            Shading::Lambert => ["light_response@Lambert", "surface_colour@Lambert"],
+            // the surface answers alike
+            Shading::LambertLegacy => ["light_response@LambertLegacy", "surface_colour@Lambert"],
+        });
+        if self.beams() {
+            names.extend(BEAMS);
+        }
+        let stages = self.march.iter().chain(self.normals);
+        names.extend(stages.flat_map(|stage| stage.formulas));
+        let cases = self.occlusion.iter().chain(&self.patterns);
+        names.extend(cases.flat_map(|case| case.formulas));
+        names
     }
 
     /// The function that tells patterns apart.
@@ -393,18 +406,37 @@ fn switch<'a>(
     )
 }
 
-/// The noise of procedural materials, recorded from the field's.
-fn noise() -> &'static str {
-    static NOISE: LazyLock<String> = LazyLock::new(|| {
-        let recorder = Recorder::new();
-        let value = gradient_noise(recorder.point("p"));
-        let function = recorder
-            .function("gradient_noise", &[("p", Argument::Vec3)], &[value])
-            .expect("a formula of the point alone has no unknown input");
-        wgsl::print(&function)
-    });
-    &NOISE
-}
+/// Formulas that every picture needs.
+const EVERYWHERE: [&str; 19] = [
+    "false_position",
+    "on_plane",
+    "pinhole_ray",
+    "across_plane",
+    "cone_slope",
+    "enter_box",
+    "leave_box",
+    "view_narrowness",
+    "width_of_pixel",
+    "radius_of_footprint",
+    "behind_surface",
+    "smoothed_slope",
+    "slope_step",
+    "filter_box",
+    "filter_tent",
+    "filter_mitchell",
+    "footprint_on",
+    "sky_colour",
+    "towards_point",
+];
+
+/// Those of `stage/beam.wgsl`.
+const BEAMS: [&str; 5] = [
+    "slope_between",
+    "secondary_step",
+    "skin_touch",
+    "soft_shadow",
+    "closest_shadow",
+];
 
 /// The function that tells penumbrae apart, and the numbers of all shadows: they are the same in every scene, so that another
 /// shadow needs no other shader.
@@ -419,7 +451,7 @@ fn penumbrae() -> String {
         .iter()
         .filter_map(|s| Some((number(s), penumbra(s)?)));
     text += &switch(
-        "fn penumbra(f: f32, z: f32, r: f32, t: f32, kind: u32) -> f32",
+        "fn penumbra(f: f32, z: f32, r: f32, t: f32, kind: u32, sharpness: f32) -> f32",
         "kind",
         cases,
         "1.0",
@@ -435,7 +467,7 @@ fn filters() -> String {
         .collect();
     let reaches = reaches.iter().map(|(kind, reach)| (*kind, reach.as_str()));
     let kind = "frame.filter_kind";
-    switch("fn filter_at(d: f32) -> f32", kind, weights, "0.0")
+    switch("fn filter_weight(x: f32) -> f32", kind, weights, "0.0")
         + &switch("fn filter_reach() -> i32", kind, reaches, "0")
 }
 
@@ -450,7 +482,7 @@ fn marcher(march: &March) -> &'static [Stage] {
         March::Fixed { .. } => &[stage!("march_fixed")],
         March::Sphere => &[stage!("march"), stage!("march_sphere")],
         March::Relaxed { .. } => &[stage!("march"), stage!("march_relaxed")],
-        March::Enhanced { .. } => &[stage!("march"), stage!("march_enhanced")],
+        March::Enhanced { .. } => &[stage!("march"), stage!("march_enhanced", "planar_step")],
         March::Auto { .. } => &[stage!("march"), stage!("march_auto")],
     }
 }
@@ -461,30 +493,21 @@ fn normals(normals: Normals) -> &'static [Stage] {
     macro_rules! neighbours {
         ($name:literal, $axes:literal) => {
             &[
-                stage!("normal"),
-                stage!("normal_neighbours"),
+                stage!("normal_neighbours", "sample_step"),
                 Stage {
                     name: $name,
                     text: concat!("const NEIGHBOUR_AXES: f32 = ", $axes, ";\n"),
+                    formulas: &[],
                 },
             ]
         };
     }
     match normals {
         Normals::Exact => &[stage!("normal_exact")],
-        Normals::Tetrahedron => &[stage!("normal"), stage!("normal_tetrahedron")],
+        Normals::Tetrahedron => &[stage!("normal_tetrahedron", "sample_step")],
         Normals::Central => neighbours!("one axis", "1.0"),
         Normals::Samples18 => neighbours!("two axes", "2.0"),
         Normals::Samples26 => neighbours!("three axes", "3.0"),
-    }
-}
-
-/// The stage of a light model.
-fn shading(shading: Shading) -> Stage {
-    match shading {
-        Shading::Phong => stage!("shade_phong"),
-        Shading::Lambert => stage!("shade_lambert"),
-        Shading::LambertLegacy => stage!("shade_legacy"),
     }
 }
 
@@ -500,17 +523,17 @@ fn casts(shadow: &Shadow) -> bool {
 fn penumbra(shadow: &Shadow) -> Option<&'static str> {
     match shadow {
         Shadow::None | Shadow::Hard => None,
-        Shadow::Soft { .. } => Some("penumbra_soft(f, t)"),
-        Shadow::SoftClosest { .. } => Some("penumbra_closest(f, z, r, t)"),
+        Shadow::Soft { .. } => Some("soft_shadow(f, t, sharpness)"),
+        Shadow::SoftClosest { .. } => Some("closest_shadow(f, z, r, t, sharpness)"),
     }
 }
 
-/// The weight of a sample that is `d` pixels away, as in `sampling.wgsl`.
+/// The weight of a sample along one axis, at `x` pixels from a pixel's middle.
 fn filter(filter: Filter) -> &'static str {
     match filter {
-        Filter::Box => "filter_box(d)",
-        Filter::Tent => "filter_tent(d)",
-        Filter::Mitchell => "filter_mitchell(d)",
+        Filter::Box => "filter_box(x)",
+        Filter::Tent => "filter_tent(x)",
+        Filter::Mitchell => "filter_mitchell(x)",
     }
 }
 
@@ -523,93 +546,117 @@ pub(crate) fn reach(filter: Filter) -> u32 {
     }
 }
 
-/// Stage and call of an occlusion method; none where there is nothing to do.
+/// Stage, call and formulas of an occlusion method; none where there is nothing to do.
 fn occlusion(method: &Occlusion) -> Option<Case> {
-    let case = |stage: Stage, call, needs| {
+    let kind = number(method);
+    let case = |stage, call, formulas, beams| {
         Some(Case {
-            kind: number(method),
+            kind,
             stage,
             call,
-            needs,
+            formulas,
+            beams,
         })
     };
     match method {
         Occlusion::None => None,
         Occlusion::Quilez { .. } => case(
-            stage!("ao_quilez"),
+            Some(stage!("ao_quilez")),
             "Openness(ao_quilez(at, how), at.normal)",
-            Needs::Nothing,
+            &["visibility"],
+            false,
         ),
         Occlusion::Bent { .. } => case(
-            stage!("ao_bent"),
+            Some(stage!("ao_bent")),
             "Openness(ao_bent(at, how), at.normal)",
-            Needs::Nothing,
+            &["visibility"],
+            false,
         ),
         Occlusion::Evans { .. } => case(
-            stage!("ao_evans"),
+            Some(stage!("ao_evans")),
             "Openness(ao_evans(at, how), at.normal)",
-            Needs::Nothing,
+            &["exponential_visibility"],
+            false,
         ),
         Occlusion::Upward { .. } => case(
-            stage!("ao_upward"),
-            "Openness(ao_upward(at, how), at.normal)",
-            Needs::Nothing,
+            None,
+            "Openness(visibility(slant(at.normal), how.scale), at.normal)",
+            &["visibility", "slant"],
+            false,
         ),
-        Occlusion::Cones { .. } => case(stage!("ao_cones"), "ao_cones(at, how)", Needs::Nothing),
+        Occlusion::Cones { .. } => case(
+            Some(stage!("ao_cones")),
+            "ao_cones(at, how)",
+            &[
+                "slope_between",
+                "secondary_step",
+                "skin_touch",
+                "cone_direction",
+                "turn_cone",
+                "cone_clear",
+                "cone_left",
+                "cone_share",
+            ],
+            false,
+        ),
         Occlusion::Hemisphere { .. } => case(
-            stage!("ao_hemisphere"),
+            Some(stage!("ao_hemisphere")),
             "Openness(ao_hemisphere(at, how, key), at.normal)",
-            Needs::Beams,
+            &["cosine_direction"],
+            true,
         ),
         Occlusion::Obscurance { .. } => case(
-            stage!("ao_obscurance"),
+            Some(stage!("ao_obscurance")),
             "Openness(ao_obscurance(at, how, key), at.normal)",
-            Needs::Beams,
+            &["cosine_direction", "obscurance"],
+            true,
         ),
     }
 }
 
-/// Stage and call of a pattern; none where it is one colour.
+/// Stage, call and formulas of a pattern; none where it is one colour.
 fn pattern(pattern: &Pattern) -> Option<Case> {
-    let case = |stage: Stage, call, needs| {
+    let kind = pattern_kind(pattern);
+    let case = |stage, call, formulas| {
         Some(Case {
-            kind: pattern_kind(pattern),
+            kind,
             stage,
             call,
-            needs,
+            formulas,
+            beams: false,
         })
     };
     match pattern {
         Pattern::Solid { .. } => None,
         Pattern::Checker { .. } => case(
-            stage!("pattern_checker"),
-            "pattern_checker(m, at)",
-            Needs::Nothing,
+            None,
+            "pattern_checker(at.point, at.normal, at.footprint, m.a, m.b, m.size)",
+            &["pattern_checker"],
         ),
         Pattern::Stripes { .. } => case(
-            stage!("pattern_stripes"),
-            "pattern_stripes(m, at)",
-            Needs::Nothing,
+            None,
+            "pattern_stripes(at.point, at.normal, at.footprint, m.a, m.b, m.c, m.size)",
+            &["pattern_stripes"],
         ),
         Pattern::Noise { .. } => case(
-            stage!("pattern_noise"),
-            "pattern_noise(m, at)",
-            Needs::Noise,
+            None,
+            "pattern_noise(at.point, at.footprint, m.a, m.b, m.size, m.detail)",
+            &["pattern_noise"],
         ),
         Pattern::Gradient { .. } => case(
-            stage!("pattern_gradient"),
-            "pattern_gradient(m, at)",
-            Needs::Nothing,
+            None,
+            "pattern_gradient(at.point, m.a, m.b, m.c, m.d)",
+            &["pattern_gradient"],
         ),
         Pattern::Triplanar { .. } => case(
-            stage!("pattern_triplanar"),
+            Some(stage!("pattern_triplanar")),
             "pattern_triplanar(m, at)",
-            Needs::Nothing,
+            &["projection_weights", "projection"],
         ),
         Pattern::Orbit { .. } => case(
-            stage!("pattern_orbit"),
-            "pattern_orbit(m, at)",
-            Needs::Nothing,
+            None,
+            "pattern_orbit(at.orbit, m.a, m.b, m.c, m.d)",
+            &["pattern_orbit"],
         ),
     }
 }

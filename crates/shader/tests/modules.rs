@@ -148,10 +148,7 @@ fn every_pattern_has_a_valid_shader() {
         "triplanar",
         "orbit",
     ] {
-        assert!(
-            text.contains(&format!("return pattern_{kind}(m, at)")),
-            "{kind}"
-        );
+        assert!(text.contains(&format!("return pattern_{kind}(")), "{kind}");
     }
 }
 

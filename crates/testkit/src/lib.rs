@@ -11,5 +11,6 @@
 //! ```
 
 pub mod conform;
+pub mod plain;
 pub mod scenes;
 pub mod wgsl;

@@ -15,8 +15,8 @@ use zeroset::scene::settings::{
 };
 use zeroset::shader::FieldForm;
 use zeroset::trace::CpuRenderer;
-use zeroset::trace::plain::{self, Compiled, Quality};
 use zeroset_testkit::conform::{BUDGETS, Budget, Difference, compare, differing};
+use zeroset_testkit::plain::{self, Compiled, Quality};
 use zeroset_testkit::scenes;
 
 #[path = "conformance/large.rs"]
@@ -374,20 +374,20 @@ const FAULTS: [(&str, &str, &str, Plane); 10] = [
     ),
     (
         "shadows that start too late",
-        "const BEAM_FIRST: f32 = 2.0;",
-        "const BEAM_FIRST: f32 = 200.0;",
+        "const SECONDARY_FIRST: f32 = 2.0f;",
+        "const SECONDARY_FIRST: f32 = 200.0f;",
         Plane::Shadow,
     ),
     (
-        "cones that are too wide",
-        "const CONE_FULL: f32 = 0.465;",
-        "const CONE_FULL: f32 = 0.8;",
+        "cones that find less room than there is",
+        "cone_clear(sine)",
+        "cone_clear(0.6 * sine)",
         Plane::Occlusion,
     ),
     (
         "a sky that is dark",
-        "(0.5 * frame.ambient)",
-        "(0.4 * frame.ambient)",
+        "frame.sky_bottom, frame.ambient,",
+        "frame.sky_bottom, 0.8 * frame.ambient,",
         Plane::Colour,
     ),
     (
@@ -404,8 +404,8 @@ const FAULTS: [(&str, &str, &str, Plane); 10] = [
     ),
     (
         "bent normals that are ignored",
-        "ambient_light(seen.bent.y)",
-        "ambient_light(at.normal.y)",
+        "seen.open, seen.bent,",
+        "seen.open, at.normal,",
         Plane::Colour,
     ),
     (

@@ -1,13 +1,7 @@
 //! Secondary rays: one stream from the hits, refilled as rays end, that finds how much of something far reaches them.
-//!
-//! Such a ray needs samples only where they can darken it. Between two samples `z` apart with the radii `r` and `f` the
-//! field is nowhere below `(r + f - z) / 2`; where even that is no penumbra, the step was free to be longer than `r`. The
-//! step that just meets this, for a field that goes on with the slope `m`, is `2 (r - w t) / (1 - m + 2 w)` with the width
-//! `w = light / sharpness` of the penumbra that still matters. For hard shadows `w` is zero and this is the step of `auto`.
-//! The slope is known at the start: it is the cosine between the normal and the ray.
+//! See [`zeroset_shade::secondary`].
 
 use crate::march::{ITERATIONS, ORDINAL, ORDINAL_BITS, age};
-use crate::marcher::Rough;
 use crate::normal::distances;
 use crate::simd::{
     Chosen, INSIDE, along, first_lanes, load, load_words, load3, sided, splat, splat3, store,
@@ -19,21 +13,10 @@ use std::ops::Range;
 use zeroset_eval::BATCH;
 use zeroset_number::lanes::LaneMask;
 use zeroset_number::{Lanes, Ops, Real, Vec3};
+use zeroset_shade::march::{behind, rise};
+use zeroset_shade::secondary::{FIRST, LEAST, SMOOTHING, STEEPEST, STOP, reach};
 use zeroset_shade::skin;
-use zeroset_shade::view::ROUNDING;
 
-/// Smoothing of the slope along a ray, as in `auto`.
-const BETA: f32 = 0.3;
-/// Share of the step that would just do: guesses are not exact, and a step that was too long is an evaluation lost.
-const SHARE: f32 = 0.95;
-/// Steeper slopes count as this.
-const STEEPEST: f32 = 0.98;
-/// A ray's first sample is this many offsets from its origin.
-pub(crate) const FIRST: f32 = 2.0;
-/// A value of an estimate below this many offsets stops a ray that has no penumbra; any other field must change its sign.
-pub(crate) const STOP: f32 = 0.125;
-/// Steps are at least this many offsets long; where there are skins, no longer than what touches one.
-pub(crate) const LEAST: f32 = 1.0 / 32.0;
 /// What counts as light for a ray that has touched something: from there on only what it hits is dark.
 const TOUCHED: f32 = -1.0;
 
@@ -177,7 +160,7 @@ fn start<S: Simd, P: Penumbra<S>, A: Aim<S>>(
             offset * STOP
         } else {
             // behind the surface, beyond rounding
-            (point.x.abs() + point.y.abs() + point.z.abs()) * -ROUNDING
+            behind(point.x.abs() + point.y.abs() + point.z.abs()) * 2.0
         },
         &mut beams.light,
         n,
@@ -262,8 +245,8 @@ fn advance<S: Simd, P: Penumbra<S>>(
         };
         // whether anything between the samples can matter
         let gap = z.above(r) & ((r + f - z) * 0.5).below(wide * to) & z.above(least);
-        let rise = ((f - r) * z.max(1e-20).rough_recip()).clamp(-1.0, 1.0);
-        let slope = Lanes::select(z.above(0.0), m.mix(rise, BETA), m);
+        let rise = rise(r, f, z);
+        let slope = Lanes::select(z.above(0.0), m.mix(rise, SMOOTHING), m);
         let slope = Lanes::select(gap, splat(s, -1.0), slope).min(STEEPEST);
         let back = if close { z } else { splat(s, 0.0) };
         let darker = penumbra.darken(light, distance, to, back, r);
@@ -286,7 +269,7 @@ fn advance<S: Simd, P: Penumbra<S>>(
         } else {
             darker.max(0.0) * width
         };
-        let reach = (r - wide * t) * (2.0 * SHARE) * (slope.one_minus() + wide * 2.0).rough_recip();
+        let reach = reach(r, t, slope, wide);
         // after a gap the step must be the radius itself: no other is sure to be kept
         // and so where a skin may be touched
         let near = if skins {

@@ -9,7 +9,7 @@ use zeroset_scene::camera::{Camera, Lens};
 use zeroset_scene::light::{Light, Sky, Source};
 use zeroset_scene::material::Material;
 use zeroset_scene::scene::{Object, Scene, SceneParts};
-use zeroset_scene::settings::{Settings, Shadow};
+use zeroset_scene::settings::{Antialias, Normals, Occlusion, Settings, Shadow};
 
 fn shape(name: &str, params: &[f64]) -> Field {
     let entry = catalogue().primitive(name).expect("in the catalogue");
@@ -56,6 +56,22 @@ pub fn sphere_box_ground() -> Scene {
         )
         .expect("a view"),
         settings: Settings::default(),
+    };
+    parts.build().expect("a scene")
+}
+
+/// The scene of the frame benchmark: soft shadows, five samples of occlusion, a ray a pixel.
+pub fn frame() -> Scene {
+    let mut parts = sphere_box_ground().into_parts();
+    parts.settings = Settings {
+        occlusion: Occlusion::Quilez {
+            steps: 5,
+            step: 0.12,
+            scale: 1.5,
+        },
+        antialias: Antialias::None,
+        normals: Normals::Exact,
+        ..parts.settings
     };
     parts.build().expect("a scene")
 }

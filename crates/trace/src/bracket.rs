@@ -1,7 +1,7 @@
 //! The part of a ray in which the field changes its sign, of one ray: for the few whose places are not found at once.
 //! `normal::refine` does the same to vectors of rays; the shaders' twin is `stage/bracket.wgsl`.
 
-use crate::normal::MIDDLE;
+use zeroset_shade::march::{MIDDLE, root};
 
 /// Such a part.
 #[derive(Clone, Copy, Debug)]
@@ -28,8 +28,7 @@ impl Bracket {
 
     /// Where the line through the values at both ends is zero, from the first.
     fn root(&self) -> f32 {
-        let above = self.above.max(0.0);
-        self.beyond * (above / (above - self.below).max(1e-30)).clamp(0.0, 1.0)
+        self.beyond * root(self.above, self.below)
     }
 
     /// Where the next sample is, from the first end: false position, or the middle.
@@ -66,7 +65,7 @@ impl Bracket {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::normal::ROUNDS;
+    use zeroset_shade::march::REFINEMENTS;
 
     /// A function that falls through zero, the ends of the part, and the root.
     type Case = (fn(f32) -> f32, [f32; 2], f32);
@@ -90,7 +89,7 @@ mod tests {
                 below: f(to),
                 last: 0.0,
             };
-            for round in 1..=ROUNDS {
+            for round in 1..=REFINEMENTS {
                 let by = part.guess(round);
                 if part.narrow(by, f(part.t + by), 1e-4) {
                     break;

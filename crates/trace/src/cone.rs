@@ -13,20 +13,17 @@ use fearless_simd::{Simd, prelude::*};
 use zeroset_number::lanes::LaneMask;
 use zeroset_number::{Lanes, Ops, Real, Vec3};
 use zeroset_scene::settings::March;
+use zeroset_shade::march::{CONE_NEAR, CONE_STEPS};
 use zeroset_shade::view::Linear;
 
 /// Sides of the cells that are marched as one cone, in pixels. They nest, each with the next one's sides times 2 or 4.
 const SIDES: [usize; 4] = [32, 8, 4, 2];
 /// The cells for which the box of the scene is looked at where no cones are marched.
 const COARSE: [usize; 1] = [8];
-/// A cone ends where its clearance is this share of its radius: with none it would creep up to the surface for ever.
-const NEAR: f32 = 0.3;
 /// Share of that clearance that a step is at least long: longer ones could circle around a surface.
 const LEAST: f32 = 0.5;
 /// Share of a cone's clearance that the cones within it may count on: they lie within it but for rounding.
 const FREE: f32 = 0.98;
-/// Steps of a cone at most. Where they run out its rays start a little earlier.
-const STEPS: u32 = 64;
 
 /// Finds where the rays of every pixel of the tile start and end, and the slope of the field along them.
 ///
@@ -204,13 +201,13 @@ fn run<S: Simd, M: Marcher>(
         width,
         share,
         near: Linear {
-            slope: width.slope * share * NEAR,
-            constant: width.constant * share * NEAR,
+            slope: width.slope * share * CONE_NEAR,
+            constant: width.constant * share * CONE_NEAR,
         },
         narrows: false,
         least: LEAST,
         touch: true,
-        max_steps: STEPS,
+        max_steps: CONE_STEPS,
     };
     q.next.start[..count].fill(f32::INFINITY);
     q.next.end[..count].copy_from_slice(&q.spans.end[..count]);

@@ -1,14 +1,11 @@
 //! What is done for a tile: the stages, sample by sample.
 
 use crate::march::ORDINAL;
-use crate::material::{Place, colour as pattern_colour};
 use crate::normal::{normals, place};
 use crate::order::{self, PLACE};
 use crate::primary::{Plan, march};
 use crate::renderer::{Done, PreparedScene};
-use crate::sampling::{point, scramble};
-use crate::shade::{Substance, arrival, colour, sky};
-use crate::shadow::{shadows, towards};
+use crate::shadow::shadows;
 use crate::simd::{INSIDE, constant, load, load3, splat, store, store3};
 use crate::stop::Stop;
 use crate::tile::{Area, HEIGHT, Hits, Scratch, Solid, WIDTH};
@@ -22,6 +19,12 @@ use zeroset_scene::camera::Camera;
 use zeroset_scene::film::Plane;
 use zeroset_scene::material::Material;
 use zeroset_scene::settings::{Filter, Occlusion, Shading};
+use zeroset_shade::light::{arrival, towards};
+use zeroset_shade::march::MARKS_BEHIND;
+use zeroset_shade::pattern::{Place, colour as pattern_colour};
+use zeroset_shade::sampling::{hit_seed, point, scramble};
+use zeroset_shade::sky::{SkyColours, colour as sky};
+use zeroset_shade::surface::{Lighting, LocalMaterial, colour};
 use zeroset_shade::view::View;
 
 /// All that tiles of one rendering have in common.
@@ -156,7 +159,7 @@ impl<'a> Job<'a> {
 
     /// Finds what the rays hit and what colour it has.
     fn trace<S: Simd>(&self, s: S, solid: &Solid<'_>, area: &Area, index: u32, q: &mut Scratch) {
-        let settings = &self.picture.scene.settings();
+        let settings = self.picture.scene.settings();
         if index == self.taken.start {
             let reach = if self.samples.is_some() { 0.5 } else { 0.0 };
             cone::prepass(
@@ -218,7 +221,7 @@ impl<'a> Job<'a> {
                     area.y as u32 + order::Y[pixel] as u32,
                 );
                 // not the random numbers of the pixel's samples
-                let key = scramble(x, y, seed ^ (index + 1).wrapping_mul(0x9e37_79b9));
+                let key = scramble(x, y, hit_seed(seed, index));
                 (q.scramble[0][i], q.scramble[1][i]) = (key[0], key[1]);
             }
         }
@@ -338,13 +341,13 @@ impl<'a> Job<'a> {
 
     /// What the surface is made of at the hits from `i` on: of each material that any of them has, as much as they have.
     #[inline(always)]
-    fn substance<S: Simd>(
+    fn local_material<S: Simd>(
         &self,
         s: S,
         hits: &Hits,
         i: usize,
         at: &Place<Lanes<S>>,
-    ) -> Substance<Lanes<S>> {
+    ) -> LocalMaterial<Lanes<S>> {
         if let Some(only) = self.picture.material {
             return whole(self.material(f32::from(only)), at, splat(s, 1.0));
         }
@@ -354,7 +357,7 @@ impl<'a> Job<'a> {
             load(s, &hits.second, i),
             load(s, &hits.share, i),
         );
-        let mut sum: Option<Substance<Lanes<S>>> = None;
+        let mut sum: Option<LocalMaterial<Lanes<S>>> = None;
         let mut last = f32::NEG_INFINITY;
         loop {
             // the next material in the order of their numbers
@@ -382,7 +385,7 @@ impl<'a> Job<'a> {
             let part = whole(self.material(number), at, weight);
             sum = Some(match sum {
                 None => part,
-                Some(all) => Substance {
+                Some(all) => LocalMaterial {
                     albedo: all.albedo + part.albedo,
                     emission: all.emission + part.emission,
                     specular: all.specular + part.specular,
@@ -403,6 +406,7 @@ impl<'a> Job<'a> {
             #[inline(always)]
             || {
                 let (scene, hits) = (&self.picture.scene, &mut q.hits);
+                let heaven = SkyColours::of(scene.sky());
                 // with more rays a pixel each stands for less of it
                 let finer = 1.0 / (self.samples() as f32).sqrt();
                 for i in (0..hits.count).step_by(S::f32s::LEN) {
@@ -420,21 +424,16 @@ impl<'a> Job<'a> {
                             load(s, &o[3], i),
                         ]);
                     }
-                    let what = self.substance(s, hits, i, &place);
-                    let (diffuse, gloss) = (load3(s, &hits.diffuse, i), load3(s, &hits.gloss, i));
-                    let (bent, open) = (load3(s, &hits.bent, i), load(s, &hits.open, i));
-                    let shading = scene.settings().shading;
-                    let c = colour(
-                        shading,
-                        scene.sky(),
-                        &what,
-                        diffuse,
-                        gloss,
-                        n,
-                        bent,
-                        d,
-                        open,
-                    );
+                    let what = self.local_material(s, hits, i, &place);
+                    let light = Lighting {
+                        diffuse: load3(s, &hits.diffuse, i),
+                        gloss: load3(s, &hits.gloss, i),
+                        open: load(s, &hits.open, i),
+                        bent: load3(s, &hits.bent, i),
+                        normal: n,
+                        direction: d,
+                    };
+                    let c = colour(scene.settings().shading, &heaven, &what, &light);
                     store3(c, &mut hits.colour, i);
                     if self.wants(Plane::Albedo) {
                         store3(what.albedo, &mut hits.albedo, i);
@@ -471,7 +470,7 @@ impl<'a> Job<'a> {
 
     /// Fills the tile with the sky. (Its colours are so smooth that the middle of a pixel does for all its samples.)
     fn background<S: Simd>(&self, s: S, area: &Area, q: &mut Scratch) {
-        let heavens = self.picture.scene.sky();
+        let heaven = SkyColours::of(self.picture.scene.sky());
         s.vectorize(
             #[inline(always)]
             || {
@@ -486,7 +485,7 @@ impl<'a> Job<'a> {
                         let (_, d) = self
                             .view
                             .split(self.view.ray(ramp + ((area.x + x) as f32 + 0.5), v));
-                        store3(sky(heavens, d.y), &mut q.planes.colour, y * WIDTH + x);
+                        store3(sky(&heaven, d.y), &mut q.planes.colour, y * WIDTH + x);
                         store(splat(s, 0.0), &mut q.planes.coverage, y * WIDTH + x);
                     }
                 }
@@ -522,8 +521,8 @@ impl<'a> Job<'a> {
 
 /// A share of one material.
 #[inline(always)]
-fn whole<S: Simd>(m: &Material, at: &Place<Lanes<S>>, weight: Lanes<S>) -> Substance<Lanes<S>> {
-    Substance {
+fn whole<S: Simd>(m: &Material, at: &Place<Lanes<S>>, weight: Lanes<S>) -> LocalMaterial<Lanes<S>> {
+    LocalMaterial {
         albedo: pattern_colour(&m.pattern, at) * weight,
         emission: constant(weight, m.emission.to_array()) * weight,
         specular: weight * m.specular,
@@ -578,10 +577,6 @@ impl Hits {
         }
     }
 }
-
-/// How far behind a hit its object is looked for, in parts of what rounding adds: a skin is as near as the solid that lies
-/// there, until it is passed.
-pub(crate) const MARKS_BEHIND: f32 = 4.0;
 
 /// Finds which objects and materials the hits belong to.
 fn marks<S: Simd>(s: S, solid: &Solid<'_>, q: &mut Scratch) {

@@ -15,7 +15,8 @@ use std::ops::Range;
 use zeroset_eval::{BATCH, Workspace};
 use zeroset_number::lanes::LaneMask;
 use zeroset_number::{Lanes, Ops, Real, Vec3};
-use zeroset_shade::view::{Linear, ROUNDING};
+use zeroset_shade::march::{LEAST_ROUNDINGS, behind};
+use zeroset_shade::view::Linear;
 
 /// Where the pixel (or hit) of a word ends and the iteration begins.
 pub(crate) const ORDINAL_BITS: u32 = 12;
@@ -112,9 +113,9 @@ impl Stream<'_> {
         let size = p.x.abs() + p.y.abs() + p.z.abs();
         Reach {
             near: near + rounding,
-            least: near * self.least + rounding * 4.0,
-            tiny: rounding * 4.0,
-            behind: size * (-0.5 * ROUNDING),
+            least: near * self.least + rounding * LEAST_ROUNDINGS,
+            tiny: rounding * LEAST_ROUNDINGS,
+            behind: behind(size),
         }
     }
 }

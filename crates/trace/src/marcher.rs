@@ -10,27 +10,11 @@
 //! changes, from the slope between its last two samples. Steps along a surface that are [`Reach::least`] are not proven any more, nor are [`Reach::tiny`] ones towards
 //! it: a body that is not longer than that along the ray may be passed.
 
-use fearless_simd::{Simd, prelude::*};
-use zeroset_number::{Lanes, Real};
-
-/// Numbers whose reciprocal can be had cheaply where it need not be right: a step that is a little off is still tested.
-pub(crate) trait Rough: Real<Scalar = f32> {
-    /// Nearly `1 / self`.
-    fn rough_recip(self) -> Self;
-}
-
-impl Rough for f32 {
-    fn rough_recip(self) -> f32 {
-        1.0 / self
-    }
-}
-
-impl<S: Simd> Rough for Lanes<S> {
-    #[inline(always)]
-    fn rough_recip(self) -> Self {
-        Lanes(self.0.approximate_recip())
-    }
-}
+use zeroset_number::Real;
+use zeroset_shade::march::{
+    GUESS_BEYOND, GUESS_LONGEST, LEAST_ROUNDINGS, LEAST_ROUNDINGS_BEHIND, Rough, TOWARDS,
+    planar_step, slope_step, smoothed,
+};
 
 /// Where a ray is.
 #[derive(Clone, Copy, Debug)]
@@ -74,30 +58,20 @@ pub(crate) trait Marcher: Copy + Send + Sync {
     /// Whether samples between which there may be a surface are taken back.
     const CAREFUL: bool = true;
     /// How far the first sample is where nothing is nearer than `r`, and `m` is a guess of the slope.
-    fn begin<R: Rough>(self, r: R, m: R) -> R;
+    fn begin<R: Rough<Scalar = f32>>(self, r: R, m: R) -> R;
     /// The next step from a place with the radius `r`, `z` behind one of radius `before`; its own number. After the `first`
     /// sample there is none before.
-    fn next<R: Rough>(self, r: R, z: R, before: R, m: R, first: R::Mask) -> (R, R);
+    fn next<R: Rough<Scalar = f32>>(self, r: R, z: R, before: R, m: R, first: R::Mask) -> (R, R);
     /// The marcher's own number after a sample was taken back.
-    fn back<R: Rough>(self, m: R) -> R {
+    fn back<R: Rough<Scalar = f32>>(self, m: R) -> R {
         m
     }
 }
 
-/// Steeper slopes along the ray count as this: a step is at most a hundred radii long.
-const STEEPEST: f32 = 0.98;
-/// A guess goes this much farther than where the sign should change, so that it does.
-const BEYOND: f32 = 1.1;
-/// A ray goes towards a surface where the value falls by more than this along it. Where it falls by less, what is behind the
-/// surface is that much longer than thick.
-const STEEP: f32 = 0.02;
-/// Guesses are at most this many footprints long.
-const LONGEST: f32 = 64.0;
-
 /// What follows from the value `f`, positive on the side that is marched, at the end of the step. `touch`: whether the
 /// surface is found already where `f` is less than the footprint, as for cones and for fractals.
 #[inline(always)]
-pub(crate) fn advance<R: Rough, M: Marcher>(
+pub(crate) fn advance<R: Rough<Scalar = f32>, M: Marcher>(
     marcher: M,
     touch: bool,
     at: Step<R>,
@@ -135,21 +109,26 @@ pub(crate) fn advance<R: Rough, M: Marcher>(
     } else {
         // steps that are longer than the radius are tested, and must be so long that they are
         let next = R::select(gap | next.below(reach.least), r, next);
-        let towards = gap | (!first & fall.above(z * STEEP));
+        let towards = gap | (!first & fall.above(z * TOWARDS));
         // from a value below zero farther than rounding reaches where the slope is the least of those: two such, and it is a
         // surface
-        let behind = R::select(r.below(0.0), reach.tiny * 16.0, reach.tiny).min(reach.least);
+        let behind = R::select(
+            r.below(0.0),
+            reach.tiny * (LEAST_ROUNDINGS_BEHIND / LEAST_ROUNDINGS),
+            reach.tiny,
+        )
+        .min(reach.least);
         let floor = R::select(towards, behind, reach.least);
         let next = next.max(floor);
         // where the surface should be, going on as from the last sample to this one
-        let guess = r * z * (fall.max(1e-30)).rough_recip() * BEYOND + reach.least;
+        let guess = r * z * (fall.max(1e-30)).rough_recip() * GUESS_BEYOND + reach.least;
         let fit = !gap
             & !first
             & f.below(reach.near)
             & !f.below(0.0)
             & fall.above(0.0)
             & guess.above(next)
-            & guess.below(reach.near * LONGEST);
+            & guess.below(reach.near * GUESS_LONGEST);
         R::select(fit, -guess, next)
     };
     let step = Step { t, z: next, r, m };
@@ -162,11 +141,18 @@ pub(crate) struct Sphere;
 
 impl Marcher for Sphere {
     #[inline(always)]
-    fn begin<R: Rough>(self, r: R, _m: R) -> R {
+    fn begin<R: Rough<Scalar = f32>>(self, r: R, _m: R) -> R {
         r
     }
     #[inline(always)]
-    fn next<R: Rough>(self, r: R, _z: R, _before: R, m: R, _first: R::Mask) -> (R, R) {
+    fn next<R: Rough<Scalar = f32>>(
+        self,
+        r: R,
+        _z: R,
+        _before: R,
+        m: R,
+        _first: R::Mask,
+    ) -> (R, R) {
         (r, m)
     }
 }
@@ -180,16 +166,16 @@ pub(crate) struct Relaxed {
 
 impl Marcher for Relaxed {
     #[inline(always)]
-    fn begin<R: Rough>(self, r: R, _m: R) -> R {
+    fn begin<R: Rough<Scalar = f32>>(self, r: R, _m: R) -> R {
         r
     }
     #[inline(always)]
-    fn next<R: Rough>(self, r: R, _z: R, _before: R, m: R, first: R::Mask) -> (R, R) {
+    fn next<R: Rough<Scalar = f32>>(self, r: R, _z: R, _before: R, m: R, first: R::Mask) -> (R, R) {
         let m = R::select(first, r.lit(self.omega), m);
         (r * m, m)
     }
     #[inline(always)]
-    fn back<R: Rough>(self, m: R) -> R {
+    fn back<R: Rough<Scalar = f32>>(self, m: R) -> R {
         m.lit(1.0)
     }
 }
@@ -202,16 +188,15 @@ pub(crate) struct Enhanced {
 
 impl Marcher for Enhanced {
     #[inline(always)]
-    fn begin<R: Rough>(self, r: R, _m: R) -> R {
+    fn begin<R: Rough<Scalar = f32>>(self, r: R, _m: R) -> R {
         r
     }
     #[inline(always)]
-    fn next<R: Rough>(self, r: R, z: R, before: R, m: R, first: R::Mask) -> (R, R) {
-        // z = r + w r (d - r0 + r) / (d + r0 - r)
-        let ahead = z - before + r;
-        let behind = (z + before - r).max(z * (1.0 - STEEPEST)).max(1e-20);
-        let guess = r + r * (ahead * behind.rough_recip()).max(0.0) * self.share;
-        (R::select(first, r, guess), m)
+    fn next<R: Rough<Scalar = f32>>(self, r: R, z: R, before: R, m: R, first: R::Mask) -> (R, R) {
+        (
+            R::select(first, r, planar_step(r, before, z, self.share)),
+            m,
+        )
     }
 }
 
@@ -224,17 +209,16 @@ pub(crate) struct Auto {
 
 impl Marcher for Auto {
     #[inline(always)]
-    fn begin<R: Rough>(self, r: R, m: R) -> R {
-        r * (m.one_minus().rough_recip() * 2.0).max(1.0)
+    fn begin<R: Rough<Scalar = f32>>(self, r: R, m: R) -> R {
+        slope_step(r, m)
     }
     #[inline(always)]
-    fn next<R: Rough>(self, r: R, z: R, before: R, m: R, first: R::Mask) -> (R, R) {
-        let slope = ((r - before) * z.max(1e-20).rough_recip()).clamp(-1.0, 1.0);
-        let m = R::select(first, m, m.mix(slope, self.beta).min(STEEPEST));
+    fn next<R: Rough<Scalar = f32>>(self, r: R, z: R, before: R, m: R, first: R::Mask) -> (R, R) {
+        let m = R::select(first, m, smoothed(m, before, r, z, self.beta));
         (self.begin(r, m), m)
     }
     #[inline(always)]
-    fn back<R: Rough>(self, m: R) -> R {
+    fn back<R: Rough<Scalar = f32>>(self, m: R) -> R {
         m.lit(-1.0)
     }
 }
@@ -248,11 +232,18 @@ pub(crate) struct Fixed {
 impl Marcher for Fixed {
     const CAREFUL: bool = false;
     #[inline(always)]
-    fn begin<R: Rough>(self, r: R, _m: R) -> R {
+    fn begin<R: Rough<Scalar = f32>>(self, r: R, _m: R) -> R {
         r.lit(0.0)
     }
     #[inline(always)]
-    fn next<R: Rough>(self, r: R, _z: R, _before: R, m: R, _first: R::Mask) -> (R, R) {
+    fn next<R: Rough<Scalar = f32>>(
+        self,
+        r: R,
+        _z: R,
+        _before: R,
+        m: R,
+        _first: R::Mask,
+    ) -> (R, R) {
         (r.lit(self.step), m)
     }
 }
@@ -352,10 +343,17 @@ mod tests {
     struct Careless;
     impl Marcher for Careless {
         const CAREFUL: bool = false;
-        fn begin<R: Rough>(self, r: R, _m: R) -> R {
+        fn begin<R: Rough<Scalar = f32>>(self, r: R, _m: R) -> R {
             r
         }
-        fn next<R: Rough>(self, r: R, _z: R, _before: R, m: R, _first: R::Mask) -> (R, R) {
+        fn next<R: Rough<Scalar = f32>>(
+            self,
+            r: R,
+            _z: R,
+            _before: R,
+            m: R,
+            _first: R::Mask,
+        ) -> (R, R) {
             (r.max(0.0) * 1.3 + 0.01, m)
         }
     }

@@ -10,20 +10,11 @@ use zeroset_eval::{BATCH, Lane, Workspace};
 use zeroset_field::program::FLAT;
 use zeroset_number::{Lanes, Ops, Real, Vec3, v3};
 use zeroset_scene::settings::Normals;
+use zeroset_shade::march::{MIDDLE, REFINEMENTS, SETTLED, root};
+use zeroset_shade::normal::{CENTRAL, NEIGHBOURS_18, NEIGHBOURS_26, TETRAHEDRON, step};
 
-/// Least distance between the samples of a normal, as a share of the largest coordinate: with less, the rounding of single
-/// precision would show as noise.
-const LEAST_STEP: f32 = 1.0 / 16384.0;
-
-/// Guesses, at most, of where the sign changes. Most places are found by one or two.
-pub(crate) const ROUNDS: u32 = 24;
-/// One guess of so many is the middle: far from straight, false position hardly moves.
-pub(crate) const MIDDLE: u32 = 3;
 /// Vectors of rays go on together while more than this share of them moves.
 const TOGETHER: f32 = 0.25;
-/// A guess is right where a straight line leads from it to the surface within this share of the footprint's radius.
-const SETTLED: f32 = 1.0 / 256.0;
-
 /// Finds the points where the sign changes, and the values there if they are wanted; then, `rounds` times, puts hits where the
 /// footprint of their pixel meets the surface (Keinert 2014, 3.4, equations 2 and 3).
 pub(crate) fn place<S: Simd>(
@@ -102,9 +93,8 @@ fn near<S: Simd>(s: S, solid: &Solid<'_>, hits: &Hits, i: usize) -> Lanes<S> {
 /// Where a line through the values at both ends of the part of a ray is zero, from its beginning.
 #[inline(always)]
 fn zero<S: Simd>(s: S, hits: &Hits, i: usize) -> Lanes<S> {
-    let (f, behind) = (load(s, &hits.f, i).max(0.0), load(s, &hits.behind, i));
-    let share = f / (f - behind).max(1e-30);
-    load(s, &hits.beyond, i) * share.clamp01()
+    let share = root(load(s, &hits.f, i), load(s, &hits.behind, i));
+    load(s, &hits.beyond, i) * share
 }
 
 /// The next guess of where the sign changes, from the beginning of the part of a ray.
@@ -125,7 +115,7 @@ fn refine<S: Simd>(s: S, solid: &Solid<'_>, k: usize, n: usize, q: &mut Scratch)
     let mut last = Lane::ZERO;
     let mut moving = [0u32; BATCH];
     let (mut count, mut rounds) = (n, 0);
-    while count as f32 > TOGETHER * n as f32 && rounds < ROUNDS && !solid.stop.is_set() {
+    while count as f32 > TOGETHER * n as f32 && rounds < REFINEMENTS && !solid.stop.is_set() {
         rounds += 1;
         let round = rounds;
         let hits = &q.hits;
@@ -214,7 +204,7 @@ fn refine_rest<S: Simd>(
         };
     }
     let mut count = moving.len();
-    for round in rounds + 1..=ROUNDS {
+    for round in rounds + 1..=REFINEMENTS {
         if count == 0 || solid.stop.before(count) {
             break;
         }
@@ -309,55 +299,6 @@ fn fill<S: Simd>(n: usize, work: &mut Workspace, point: impl Fn(usize) -> Vec3<L
 fn point_of<S: Simd>(s: S, solid: &Solid<'_>, hits: &Hits, i: usize) -> Vec3<Lanes<S>> {
     let (o, d) = solid.view.split(load3(s, &hits.ray, i));
     along(o, d, load(s, &hits.t, i))
-}
-
-/// The corners of a tetrahedron, from its middle.
-pub(crate) const TETRAHEDRON: [[f32; 3]; 4] = [
-    [1.0, -1.0, -1.0],
-    [-1.0, -1.0, 1.0],
-    [-1.0, 1.0, -1.0],
-    [1.0, 1.0, 1.0],
-];
-/// Both ways along each axis.
-pub(crate) const CENTRAL: [[f32; 3]; 6] = [
-    [1.0, 0.0, 0.0],
-    [-1.0, 0.0, 0.0],
-    [0.0, 1.0, 0.0],
-    [0.0, -1.0, 0.0],
-    [0.0, 0.0, 1.0],
-    [0.0, 0.0, -1.0],
-];
-
-/// The neighbours in a cube of 27 that differ in at most `most` coordinates, sides first.
-pub(crate) const fn neighbours<const N: usize>(most: usize) -> [[f32; 3]; N] {
-    let mut out = [[0.0; 3]; N];
-    let (mut at, mut axes) = (0, 1);
-    while axes <= most {
-        let mut i = 0;
-        while i < 27 {
-            let c = [i % 3, i / 3 % 3, i / 9];
-            if (c[0] != 1) as usize + (c[1] != 1) as usize + (c[2] != 1) as usize == axes {
-                out[at] = [c[0] as f32 - 1.0, c[1] as f32 - 1.0, c[2] as f32 - 1.0];
-                at += 1;
-            }
-            i += 1;
-        }
-        axes += 1;
-    }
-    out
-}
-
-/// Sides and edges of a cube.
-pub(crate) const NEIGHBOURS_18: [[f32; 3]; 18] = neighbours(2);
-/// Sides, edges and corners of a cube.
-pub(crate) const NEIGHBOURS_26: [[f32; 3]; 26] = neighbours(3);
-
-/// Distance between the samples of a normal at `p`: half a pixel, but not less than single precision can tell.
-#[inline(always)]
-pub(crate) fn step<R: Real<Scalar = f32>>(p: Vec3<R>, pixel: R) -> R {
-    (pixel * 0.5)
-        .max(p.abs().max_component() * LEAST_STEP)
-        .max(1e-18)
 }
 
 /// Finds the normals of all hits, on the side that is marched.

@@ -10,6 +10,7 @@ use fearless_simd::{Simd, prelude::*};
 use zeroset_number::lanes::LaneMask;
 use zeroset_number::{Lanes, Ops, Real, Vec3};
 use zeroset_scene::settings::March;
+use zeroset_shade::march::{LEAST_SHARE, LEAST_SHARE_OF_FRACTALS};
 use zeroset_shade::view::Linear;
 
 /// How the march of a picture is done.
@@ -56,7 +57,11 @@ fn run<S: Simd, M: Marcher>(
         share: 1.0,
         near: view.footprint(share),
         narrows: view.pinhole,
-        least: if solid.fractal { 0.5 } else { LEAST },
+        least: if solid.fractal {
+            LEAST_SHARE_OF_FRACTALS
+        } else {
+            LEAST_SHARE
+        },
         touch: solid.fractal,
         max_steps: solid.max_steps,
     };
@@ -90,9 +95,6 @@ fn run<S: Simd, M: Marcher>(
         search(plan, &how, area, q);
     }
 }
-
-/// Share of the footprint that a step is at least long. What is thinner may be passed.
-const LEAST: f32 = 1.0 / 16.0;
 
 /// The rays of a tile, one a pixel.
 struct Pixels<'a> {
@@ -186,7 +188,12 @@ fn search(plan: &Plan, how: &Stream<'_>, area: &Area, q: &mut Scratch) {
         };
         let near = solid.view.near(t, solid.view.narrow(ray));
         let found = if plan.select && !solid.fractal {
-            isolation.first(&line, t, q.spans.end[k], near * solid.view.fine * LEAST)
+            isolation.first(
+                &line,
+                t,
+                q.spans.end[k],
+                near * solid.view.fine * LEAST_SHARE,
+            )
         } else {
             Crossing::Unknown(t)
         };

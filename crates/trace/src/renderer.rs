@@ -219,7 +219,7 @@ impl PreparedScene {
     ) -> (Part, Film) {
         let mut sums = Accumulator::new(size, self.scene.settings().antialias, planes);
         let samples = 0..sums.wanted();
-        let part = self.sample_part(&self.scene.camera(), samples, &mut sums, observer);
+        let part = self.sample_part(self.scene.camera(), samples, &mut sums, observer);
         (part, sums.into_film())
     }
 

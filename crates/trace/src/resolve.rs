@@ -4,13 +4,13 @@
 //! takes the sums of the tiles around it in the order of their numbers: the result does not depend on threads.
 
 use crate::planes::Planes;
-use crate::sampling::{radius, weight};
 use crate::simd::{fma, load, load3, splat, store};
 use crate::tile::{Area, HEIGHT, WIDTH};
 use fearless_simd::{Simd, prelude::*};
 use zeroset_number::{Lanes, Ops, Real};
 use zeroset_scene::accumulator::Sum;
 use zeroset_scene::settings::Filter;
+use zeroset_shade::sampling::{radius, weight};
 
 /// Pixels that sums reach over the edge of a tile: as many as the widest filter.
 const MARGIN: usize = 2;

@@ -172,12 +172,6 @@ pub(crate) fn splat<S: Simd>(s: S, c: f32) -> Lanes<S> {
     Lanes(S::f32s::splat(s, c))
 }
 
-/// The vector of `f(0)`, `f(1)` and `f(2)`.
-#[inline(always)]
-pub(crate) fn each<R>(f: impl Fn(usize) -> R) -> Vec3<R> {
-    v3(f(0), f(1), f(2))
-}
-
 /// `c` as numbers of the company of `x`.
 #[inline(always)]
 pub(crate) fn constant<R: Real<Scalar = f32>>(x: R, c: [f32; 3]) -> Vec3<R> {

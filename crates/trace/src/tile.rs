@@ -221,7 +221,7 @@ pub(crate) struct Scratch {
     /// Random numbers of the hits.
     pub(crate) scramble: [Vec<u32>; 2],
     /// Sines of the clearances of the occlusion's cones.
-    pub(crate) clearance: [Box<Sheet>; crate::ao::cones::DIRECTIONS],
+    pub(crate) clearance: [Box<Sheet>; zeroset_shade::occlusion::CONES],
     pub(crate) planes: Planes,
     pub(crate) counts: Evaluations,
 }

@@ -358,7 +358,7 @@ pub(crate) struct MeasuredFrame {
     /// The scene. Default: a sphere and a box on the ground, soft shadows, 5-tap occlusion, 512x512
     #[arg(value_name = "SCENE", value_hint = ValueHint::FilePath)]
     pub scene: Option<PathBuf>,
-    /// What is measured: the CPU against the plain renderer, or a GPU against the CPU
+    /// What is measured: the CPU, or a GPU against the CPU
     #[arg(long, value_name = "WHAT", value_enum, default_value_t = Backend::Cpu)]
     pub backend: Backend,
     /// The GPU whose name holds this text; `zeroset gpu` lists them

@@ -6,8 +6,6 @@ struct Openness {
     bent: vec3f,
 }
 
-const UP: vec3f = vec3f(0.0, 1.0, 0.0);
-
 /// What is shown as the distance to the surface at a place.
 fn around(at: Surface, p: vec3f) -> f32 {
     counted[COUNT_OCCLUSION] += 1u;

@@ -6,9 +6,9 @@ fn ao_bent(at: Surface, how: Occluder) -> f32 {
     var weight = 1.0;
     for (var k = 1u; k <= u32(how.count); k++) {
         let far = f32(k) * how.reach;
-        weight /= 1.1;
+        weight /= BENT_FALL;
         sum += weight * (length(n) * far - around(at, at.point + n * far));
         n += UP * how.bend;
     }
-    return 1.0 - clamp(how.scale * sum, 0.0, 1.0);
+    return visibility(sum, how.scale);
 }

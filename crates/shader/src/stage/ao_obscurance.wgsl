@@ -7,7 +7,7 @@ fn ao_obscurance(at: Surface, how: Occluder, key: vec2u) -> f32 {
         if (dot(at.normal, to) > 0.0) {
             let beam = look(at, to, how.reach, SHADOW_HARD, 0.0);
             counted[COUNT_OCCLUSION] += beam.samples;
-            sum += select(1.0 - exp(-how.scale * beam.t), 1.0, beam.light > 0.0);
+            sum += select(obscurance(beam.t, how.scale), 1.0, beam.light > 0.0);
         }
     }
     return sum / max(how.count, 1.0);

@@ -5,8 +5,8 @@ fn ao_quilez(at: Surface, how: Occluder) -> f32 {
     var weight = 1.0;
     for (var k = 1u; k <= u32(how.count); k++) {
         let far = f32(k) * how.reach;
-        weight *= 0.5;
+        weight *= QUILEZ_FALL;
         sum += weight * (far - around(at, at.point + at.normal * far));
     }
-    return 1.0 - clamp(how.scale * sum, 0.0, 1.0);
+    return visibility(sum, how.scale);
 }

@@ -13,13 +13,6 @@ struct Found {
     refined: u32,
 }
 
-/// Guesses, at most, of where the sign changes. Most places are found by one or two.
-const REFINEMENTS: u32 = 24u;
-/// One guess of so many is the middle: far from straight, false position hardly moves.
-const MIDDLE: u32 = 3u;
-/// A guess is right where a straight line leads from it to the surface within this share of the footprint's radius.
-const SETTLED: f32 = 0.00390625;
-
 /// The part of a ray in which the field changes its sign.
 struct Bracket {
     /// The place before the surface, and the value there.
@@ -34,8 +27,7 @@ struct Bracket {
 
 /// Where the line through the values at both ends is zero.
 fn bracket_root(part: Bracket) -> f32 {
-    let share = clamp(part.above / max(part.above - part.below, 1e-30), 0.0, 1.0);
-    return part.before + (part.behind - part.before) * share;
+    return part.before + (part.behind - part.before) * false_position(part.above, part.below);
 }
 
 /// Where the next sample is, after `refined` of them.

@@ -3,13 +3,6 @@
 // A cone of slope k is free up to t where the field is larger than its radius w = k t + c. Its clearance (f - w) / (1 + k) is
 // a distance along the axis: it changes by at most 1 per unit, as the field does along a ray. So cones are marched like rays.
 
-/// A cone ends where its clearance is this share of its radius: with none it would creep up to the surface for ever.
-const CONE_NEAR: f32 = 0.3;
-/// Steps of a cone at most. Where they run out its rays start a little earlier.
-const CONE_STEPS: u32 = 64u;
-/// Smoothing of the slope along a cone.
-const CONE_SMOOTHING: f32 = 0.3;
-
 /// Where the rays of a cell start, the slope of the field along them, and where they end. They start at infinity where there
 /// is nothing to hit.
 struct Span {
@@ -51,7 +44,7 @@ fn march_cone(corner: vec2u, side: f32, above: Span) -> Span {
                 z = min(r, end - t);
                 continue;
             }
-            m = min(mix(m, clamp((next - r) / max(z, 1e-20), -1.0, 1.0), CONE_SMOOTHING), 0.98);
+            m = smoothed_slope(m, r, next, z, CONE_SMOOTHING);
         }
         t = at;
         r = next;
@@ -61,7 +54,7 @@ fn march_cone(corner: vec2u, side: f32, above: Span) -> Span {
         if (t + r >= end) {
             return Span(FAR, -1.0, end);
         }
-        z = min(r * max(2.0 / (1.0 - m), 1.0), end - t);
+        z = min(slope_step(r, m), end - t);
     }
     return Span(t, -1.0, end);
 }

@@ -2,9 +2,6 @@
 // where it is close to the distance, else the value over the length of the gradient (Taubin 1994), which no constant that the
 // value was divided by changes.
 
-/// Slopes below this are none.
-const FLAT_SLOPE: f32 = 1e-12;
-
 fn sensed(p: vec3f) -> vec2f {
     let there = field_gradient(p);
     return vec2f(there.x, select(there.x / max(length(there.yzw), FLAT_SLOPE), there.x, is_close()));

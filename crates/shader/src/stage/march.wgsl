@@ -4,22 +4,13 @@
 // two samples. Least steps along a surface are not proven any more, nor are tiny ones towards it: a body that is not longer
 // than that along the ray may be passed.
 
-/// A guess goes this much farther than where the sign should change, so that it does.
-const GUESS_BEYOND: f32 = 1.1;
-/// Guesses are at most this many footprints long, until a ray is about to run out of steps.
-const GUESS_LONGEST: f32 = 64.0;
-/// Rays of pictures with fewer rows are marched as if they had this many.
-const FINE_ROWS: f32 = 512.0;
-/// A ray goes towards a surface where the value falls by more than this along it.
-const TOWARDS: f32 = 0.02;
-
 /// Marches a ray from `start` to `end`. `slope` is the field's slope along it, as far as it is known.
 fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
     let fractal = is_fractal();
     let narrow = narrowness(ray);
     let finer = min(f32(frame.size.y) / FINE_ROWS, 1.0);
     let foot = frame.footprint * select(finer, 1.0 / sqrt(f32(max(frame.samples, 1u))), fractal);
-    let share = select(LEAST_SHARE, 0.5, fractal);
+    let share = select(LEAST_SHARE, LEAST_SHARE_OF_FRACTALS, fractal);
     // a ray that nearly ran out of steps looks for the surface however far it is: a guess that finds none is taken back
     let late = select(frame.max_steps, frame.max_steps - frame.max_steps / 4u, frame.hit_selection != 0u);
     var t = start;
@@ -53,7 +44,7 @@ fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
             t = bracket_guess(part, refined);
             continue;
         }
-        let least = radius * share + 4.0 * rounding;
+        let least = radius * share + LEAST_ROUNDINGS * rounding;
         guess = guess && steps > 1u;
         var root = 0.0;
         if (steps == 1u) {
@@ -75,7 +66,7 @@ fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
             if (gap) {
                 // a gap between the spheres: back to the sphere itself
                 progress = failed(progress);
-                z = min(max(r, select(4.0 * rounding, least, fractal)), end - t);
+                z = min(max(r, select(LEAST_ROUNDINGS * rounding, least, fractal)), end - t);
                 guess = false;
                 continue;
             }
@@ -96,7 +87,7 @@ fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
         }
         // steps that are longer than the radius are tested, and must be so long that they are
         let step = next_step(progress, r);
-        z = max(select(step, r, !fractal && step < least), select(least, min(select(4.0, 64.0, r < 0.0) * rounding, least), towards && !fractal));
+        z = max(select(step, r, !fractal && step < least), select(least, min(select(LEAST_ROUNDINGS, LEAST_ROUNDINGS_BEHIND, r < 0.0) * rounding, least), towards && !fractal));
         let sure = (r < limit && root < GUESS_LONGEST * limit) || steps > late;
         guess = !fractal && steps > 1u && falling && r >= 0.0 && sure && root > z;
         z = min(select(z, root, guess), end - t);

@@ -9,10 +9,9 @@ fn failed(progress: vec2f) -> vec2f {
 }
 
 fn passed(progress: vec2f, z: f32, r: f32, next: f32) -> vec2f {
-    let slope = clamp((next - r) / max(z, 1e-20), -1.0, 1.0);
-    return vec2f(min(mix(progress.x, slope, frame.march), 0.98), 0.0);
+    return vec2f(smoothed_slope(progress.x, r, next, z, frame.march), 0.0);
 }
 
 fn next_step(progress: vec2f, r: f32) -> f32 {
-    return r * max(2.0 / (1.0 - progress.x), 1.0);
+    return slope_step(r, progress.x);
 }

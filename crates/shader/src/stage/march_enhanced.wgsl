@@ -17,7 +17,5 @@ fn next_step(progress: vec2f, r: f32) -> f32 {
     if (progress.x <= 0.0) {
         return r;
     }
-    let ahead = progress.x - progress.y + r;
-    let behind = max(max(progress.x + progress.y - r, 0.02 * progress.x), 1e-20);
-    return r + frame.march * r * max(ahead / behind, 0.0);
+    return planar_step(r, progress.y, progress.x, frame.march);
 }

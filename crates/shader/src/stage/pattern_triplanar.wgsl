@@ -21,27 +21,16 @@ fn image_colour(m: Material, at: vec2f) -> vec3f {
 }
 
 fn pattern_triplanar(m: Material, at: Place) -> vec3f {
-    let p = at.point / m.size;
-    let n = at.normal;
-    let outwards = select(vec3f(1.0), vec3f(-1.0), n < vec3f(0.0));
+    let weights = projection_weights(at.normal, m.detail);
     var sum = vec3f(0.0);
-    var weights = 0.0;
-    // relative to the largest part: high powers of all three may be too small for a number
-    let steepness = abs(n) / max(max(abs(n.x), abs(n.y)), max(abs(n.z), 1.2e-38));
+    var total = 0.0;
     for (var k = 0u; k < 3u; k++) {
-        let weight = pow(steepness[k], m.detail);
-        if (weight < 1e-4) {
+        let weight = weights[k];
+        if (weight < LEAST_WEIGHT) {
             continue;
         }
-        // across and down as they are seen from outside
-        var uv = vec2f(-p.z * outwards.x, -p.y);
-        if (k == 1u) {
-            uv = vec2f(p.x, p.z * outwards.y);
-        } else if (k == 2u) {
-            uv = vec2f(p.x * outwards.z, -p.y);
-        }
-        sum += image_colour(m, uv) * weight;
-        weights += weight;
+        sum += image_colour(m, projection(at.point, at.normal, f32(k), m.size)) * weight;
+        total += weight;
     }
-    return sum / max(weights, 1.2e-38);
+    return sum / max(total, LEAST_NORMAL);
 }

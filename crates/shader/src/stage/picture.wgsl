@@ -34,12 +34,6 @@ fn turned(v: vec3f, axis: vec3f, angle: vec2f) -> vec3f {
     return v * angle.x + cross(axis, v) * angle.y + axis * (dot(axis, v) * (1.0 - angle.x));
 }
 
-/// From linear light to sRGB (IEC 61966-2-1).
-fn encode(linear: vec3f) -> vec3f {
-    let c = clamp(linear, vec3f(0.0), vec3f(1.0));
-    return select(1.055 * pow(c, vec3f(1.0 / 2.4)) - 0.055, 12.92 * c, c <= vec3f(0.0031308));
-}
-
 /// The colour of the pixel whose top left corner is `corner`, in pixels from the top left of a picture of this size.
 fn picture(corner: vec2f, size: vec2f, angles: vec2f) -> vec4f {
     fit(size);
@@ -53,5 +47,5 @@ fn picture(corner: vec2f, size: vec2f, angles: vec2f) -> vec4f {
         let ray = camera_ray(corner + jitter(pixel, k));
         sum += trace_ray(pixel, k, ray, vec3f(0.0, -1.0, FAR)).colour;
     }
-    return vec4f(encode(sum / f32(rays) * EXPOSURE), 1.0);
+    return vec4f(srgb(sum / f32(rays) * EXPOSURE), 1.0);
 }

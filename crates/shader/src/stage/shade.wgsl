@@ -1,7 +1,7 @@
 // How light becomes colour.
 
-/// What a surface is made of, where materials meet a mixture of them.
-struct Substance {
+/// What a surface is made of at one place: where materials meet, a mixture of them.
+struct LocalMaterial {
     albedo: vec3f,
     emission: vec3f,
     specular: f32,
@@ -21,30 +21,12 @@ struct Arrival {
     lit: f32,
 }
 
-/// Reflectance of a non-metal looked at along its normal.
-const DIELECTRIC: f32 = 0.04;
-
-/// The sky along a direction whose height is `y`: smooth from the bottom over the horizon to the top.
-fn sky_colour(y: f32) -> vec3f {
-    let far = select(frame.sky_top, frame.sky_bottom, y < 0.0);
-    return mix(frame.sky_horizon, far, sqrt(min(abs(y), 1.0)));
-}
-
-/// What arrives of the sky at an open surface whose normal (or bent normal) has the height `y`.
-fn ambient_light(y: f32) -> vec3f {
-    let low = frame.sky_bottom + frame.sky_horizon;
-    let rise = frame.sky_top - frame.sky_bottom;
-    return (low + rise * (0.5 * y + 0.5)) * (0.5 * frame.ambient);
-}
-
 /// Direction to a light, and its distance.
 fn towards(light: Light, p: vec3f) -> vec4f {
     if (light.kind == 0.0) {
         return vec4f(light.place, FAR);
     }
-    let to = light.place - p;
-    let distance = max(length(to), 1e-18);
-    return vec4f(to / distance, distance);
+    return towards_point(light.place, p);
 }
 
 /// What arrives from all lights.
@@ -56,12 +38,22 @@ fn arriving(at: Surface, shininess: f32) -> Arrival {
         let ray = towards(light, origin);
         let lit = shadow(at, light, ray.xyz, ray.w);
         let to = towards(light, at.point);
-        let power = falloff(light, to.w);
-        let cosine = max(dot(at.normal, to.xyz), 0.0);
-        sum.diffuse += light.radiance * (cosine * DIFFUSE_SCALE * power * lit);
-        sum.gloss += light.radiance * (highlight(at, to.xyz, cosine, shininess) * power * lit);
-        sum.share += power * light.luminance;
-        sum.lit += power * light.luminance * lit;
+        // by the cosine law, in the highlight, and what distance leaves
+        let answer = light_response(to.xyz, to.w, light.kind, at.normal, at.direction, shininess);
+        let power = answer.z * lit;
+        sum.diffuse += light.radiance * (answer.x * power);
+        sum.gloss += light.radiance * (answer.y * power);
+        sum.share += answer.z * light.luminance;
+        sum.lit += power * light.luminance;
     }
     return sum;
+}
+
+/// The colour of a surface in the light that it gets.
+fn colour_of(what: LocalMaterial, light: Arrival, at: Surface, seen: Openness) -> vec3f {
+    return surface_colour(
+        what.albedo, what.emission, what.specular, what.metallic, what.roughness,
+        light.diffuse, light.gloss, seen.open, seen.bent, at.normal, at.direction,
+        frame.sky_horizon, frame.sky_top, frame.sky_bottom, frame.ambient,
+    );
 }

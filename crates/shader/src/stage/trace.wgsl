@@ -1,14 +1,14 @@
 // One ray, from the camera to its colour.
 
-fn substance_of(number: f32, at: Place) -> Substance {
+fn local_material(number: f32, at: Place) -> LocalMaterial {
     let known = number >= 0.0 && number < f32(frame.materials);
     let which = select(frame.materials, u32(max(number, 0.0)), known);
     let m = load_material(frame.material_rows + which * MATERIAL_ROWS);
-    return Substance(pattern_colour(m, at), m.emission, m.specular, m.metallic, m.roughness, m.shininess);
+    return LocalMaterial(pattern_colour(m, at), m.emission, m.specular, m.metallic, m.roughness, m.shininess);
 }
 
-fn blend(a: Substance, b: Substance, share: f32) -> Substance {
-    return Substance(
+fn blend(a: LocalMaterial, b: LocalMaterial, share: f32) -> LocalMaterial {
+    return LocalMaterial(
         mix(a.albedo, b.albedo, share),
         mix(a.emission, b.emission, share),
         mix(a.specular, b.specular, share),
@@ -18,13 +18,9 @@ fn blend(a: Substance, b: Substance, share: f32) -> Substance {
     );
 }
 
-/// How far behind a hit its object is looked for, in parts of what rounding adds: a skin is as near as the solid that lies
-/// there, until it is passed.
-const MARKS_BEHIND: f32 = 4.0;
-
 /// What a ray found that hit nothing.
 fn background(ray: Ray, steps: u32) -> Sample {
-    let colour = sky_colour(ray.direction.y);
+    let colour = sky_colour(frame.sky_horizon, frame.sky_top, frame.sky_bottom, ray.direction.y);
     return Sample(colour, -1.0, vec3f(0.0), 0.0, vec3f(0.0), 1.0, 1.0, 0.0, f32(steps), 0u);
 }
 
@@ -73,7 +69,7 @@ fn trace_ray(pixel: vec2u, index: u32, ray: Ray, span: vec3f) -> Sample {
     let at = Surface(point, normal, found.side, 2.0 * max(abs(found.f), footprint(ray, t)), ray.direction);
     let marks = field_marks(point - normal * (MARKS_BEHIND * (frame.rounding.x * t + frame.rounding.y)));
     counted[COUNT_MATERIAL] += 1u;
-    let key = scramble(pixel, frame.seed ^ ((index + 1u) * 0x9e3779b9u));
+    let key = scramble(pixel, frame.seed ^ ((index + 1u) * HIT_SEEDS));
     let object = select(frame.objects, u32(max(marks.object, 0.0)), marks.object >= 0.0 && marks.object < f32(frame.objects));
     // inside a solid there is no sky: it is shown as if there were no solid
     var seen = Openness(1.0, normal);
@@ -82,12 +78,12 @@ fn trace_ray(pixel: vec2u, index: u32, ray: Ray, span: vec3f) -> Sample {
     }
     let width = pixel_here / sqrt(f32(max(frame.samples, 1u)));
     let place = place_on(point, normal, ray.direction, width, marks.orbit);
-    var what = substance_of(marks.first, place);
+    var what = local_material(marks.first, place);
     if (marks.share > 0.0) {
-        what = blend(what, substance_of(marks.second, place), marks.share);
+        what = blend(what, local_material(marks.second, place), marks.share);
     }
     let light = arriving(at, what.shininess);
-    let colour = surface_colour(what, light, at, seen);
+    let colour = colour_of(what, light, at, seen);
     counted[COUNT_HITS] += 1u;
     return Sample(
         colour,

@@ -24,7 +24,7 @@ use zeroset::scene::film::Film;
 use zeroset::scene::render::{Renderer, Silent};
 use zeroset::scene::scene::Scene;
 use zeroset::trace::CpuRenderer;
-use zeroset::trace::plain::{self, Compiled, Quality};
+use zeroset_testkit::plain::{self, Compiled, Quality};
 
 /// Every check.
 fn checks() -> Vec<Check> {

@@ -1,18 +1,7 @@
-//! Occlusion from eleven cones: how far each is clear of everything, and what that says of the sky between them.
-//!
-//! The *clearance* of a direction is the largest angle around it that holds no surface: `min_t f(x + w t) / t` is its sine.
-//! It is found by sphere tracing, so the samples lie where the field is small, and it changes smoothly from place to place.
-//! It ends at the surface itself: for all that a ray knows that hit something, the edge may be just beside it or far away.
-//! But clearance changes by at most the angle between two directions. So a direction that is blocked has at most the negative
-//! clearance that its neighbours leave it, `max_j (clearance_j - angle_ij)`: how deep it lies behind the edge. With a sign on
-//! both sides of the edge, the share of the sky that a cone sees is a smooth step, and all of them together count a sky that
-//! any edge moves over evenly. (Cones as in Aaltonen 2018; the continuation is that of McShane 1934.)
-//!
-//! Nothing here is a length: cones begin some pixels from the surface, or where the largest empty ball that touches it lets
-//! them go, and end where the scene does.
+//! Occlusion from eleven cones: how far each is clear of everything, and what that says of the sky between them, see
+//! [`zeroset_shade::occlusion`].
 
 use crate::march::{ITERATIONS, ORDINAL, ORDINAL_BITS};
-use crate::marcher::Rough;
 use crate::normal::sample;
 use crate::simd::{
     Chosen, INSIDE, along, first_lanes, load, load_words, load3, sided, splat, store, store3,
@@ -23,124 +12,16 @@ use std::ops::Range;
 use zeroset_eval::BATCH;
 use zeroset_number::lanes::LaneMask;
 use zeroset_number::{Lanes, Ops, Real, Vec3, v3};
+use zeroset_shade::march::rise;
+use zeroset_shade::occlusion::{
+    BLOCKED, CARE, CONES, COSINES, EMPTY, FREE, FULL, GROWTH, NARROW, NORMAL_SHARE, START, SURE,
+    WHOLE, WIDTH, clear, directions, distances, left, ring, share, turn, weights,
+};
+use zeroset_shade::secondary::{SMOOTHING, STEEPEST, reach};
 use zeroset_shade::skin;
-
-/// Number of cones.
-pub(crate) const DIRECTIONS: usize = 11;
-/// The first of them are the ring around the normal, the others that along the horizon.
-const HIGH: usize = 4;
-// The numbers of the two rings. They, `FULL` and `EXTENT` make the error least: against rays in double precision over 60
-// random scenes of solids, floors, walls and lids, and against mathematics over two planes at random angles, balls and discs
-// over a floor, three walls and thin rooms, with the roughness of the floor under the balls. The scenes of the papers are not
-// among them.
-/// Cosines to the normal.
-pub(crate) const COSINES: [f32; 2] = [0.88, 0.49];
-/// Shares of the sky, by the cosine law, of one cone.
-const SHARES: [f32; 2] = [0.5426 / 4.0, 0.4574 / 7.0];
-/// Sine of the clearance that counts as wholly open. The plane of the surface itself leaves a low cone not more than its
-/// cosine.
-pub(crate) const FULL: f32 = 0.465;
-/// A cone counts as half hidden from this far on the one side of an edge to this far on the other.
-pub(crate) const WIDTH: [f32; 2] = [1.075, 0.9];
-/// How far, measured as the distances between directions are, wholly open is.
-pub(crate) const EXTENT: f32 = 0.43;
-/// Near an edge, up to this share of its width, an open cone counts on its neighbours as a blocked one does.
-pub(crate) const CLOSENESS: f32 = 0.2;
-
-/// From this share of wholly open on a clearance says all it can of the directions beside it.
-const TELLING: f32 = 0.2;
-
-/// Sine of the clearance that is none.
-pub(crate) const BLOCKED: f32 = 0.05;
-/// Steps are as short as an edge at this share of the clearance found so far asks for.
-pub(crate) const CARE: f32 = 0.45;
-/// A cone ends where the scene leaves it this share of what is wholly open.
-pub(crate) const SURE: f32 = 0.75;
-/// The first sample is this many offsets from the origin.
-pub(crate) const START: f32 = 4.0;
-/// Cones begin this share of the touching ball's radius times their cosine from the origin. Up to 2 there is nothing on the
-/// axis; less is also clear beside it.
-pub(crate) const FREE: f32 = 1.2;
-/// From one touching ball to the next.
-pub(crate) const GROWTH: f32 = 8.0;
-/// The radius of the touching ball is known up to this factor.
-pub(crate) const NARROW: f32 = 2.0;
-/// A ball that has all but this share of its radius is empty: single precision has no more.
-pub(crate) const EMPTY: f32 = 0.999_998;
 
 /// What counts as the clearance of a cone that has touched something: from there on only what it hits blocks it.
 const TOUCHED: f32 = -1.0;
-
-/// Smoothing of the slope along a cone, share of the step that would just do, and steepest slope, as in [`crate::beam`].
-pub(crate) const BETA: f32 = 0.3;
-pub(crate) const SHARE: f32 = 0.95;
-pub(crate) const STEEPEST: f32 = 0.98;
-
-/// The cones are made around this direction and turned from it to the normal the shortest way. It is the opposite of no
-/// face that anybody builds, and only there the shortest way is not known.
-const AXIS: [f32; 3] = [0.269_680_3, 0.898_934_4, 0.345_190_8];
-
-/// The directions around [`AXIS`].
-pub(crate) fn directions() -> [[f32; 3]; DIRECTIONS] {
-    let axis = v3(AXIS[0], AXIS[1], AXIS[2]);
-    let [a, b] = crate::sampling::basis(axis);
-    std::array::from_fn(|k| {
-        let turns = if k < HIGH {
-            k as f32 / HIGH as f32
-        } else {
-            ((k - HIGH) as f32 + 0.25) / (DIRECTIONS - HIGH) as f32
-        };
-        let (sin, cos) = (turns * std::f32::consts::TAU).sin_cos();
-        let c = COSINES[ring(k)];
-        let r = (1.0 - c * c).sqrt();
-        (a * (r * cos) + b * (r * sin) + axis * c).array()
-    })
-}
-
-/// The ring of a cone.
-#[inline(always)]
-pub(crate) fn ring(k: usize) -> usize {
-    usize::from(k >= HIGH)
-}
-
-/// Distances between directions, as points of the unit sphere.
-pub(crate) fn distances() -> [[f32; DIRECTIONS]; DIRECTIONS] {
-    let to = directions();
-    to.map(|a| to.map(|b| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f32>().sqrt()))
-}
-
-/// `w`, turned with the rotation that takes [`AXIS`] to `n` the shortest way.
-#[inline(always)]
-pub(crate) fn turn<R: Real<Scalar = f32>>(n: Vec3<R>, w: [f32; 3]) -> Vec3<R> {
-    let a = v3(n.x.lit(AXIS[0]), n.x.lit(AXIS[1]), n.x.lit(AXIS[2]));
-    let w = v3(n.x.lit(w[0]), n.x.lit(w[1]), n.x.lit(w[2]));
-    let (v, c) = (a.cross(n), a.dot(n));
-    let once = v.cross(w);
-    w + once + v.cross(once) / (c + 1.0).max(1e-4)
-}
-
-/// The share that is open of a cone whose axis is `depth` widths before an edge: 0 at -1, 1 at 1.
-#[inline(always)]
-pub(crate) fn seen<R: Real<Scalar = f32>>(depth: R) -> R {
-    let x = (depth * 0.5 + 0.5).clamp01();
-    x.sq() * (x * -2.0 + 3.0)
-}
-
-/// How far behind the edge a blocked direction is, negative, for what another leaves it that is `clear` and so far `apart`.
-/// One that is hardly clear says as little as one that is blocked: else the picture would jump where it becomes so.
-#[inline(always)]
-pub(crate) fn left<R: Real<Scalar = f32>>(clear: R, apart: f32) -> R {
-    let none = clear.lit(-WIDTH[0]);
-    none.mix(
-        clear - apart,
-        (clear * (1.0 / (TELLING * EXTENT))).clamp01(),
-    )
-}
-
-/// What one cone of a ring adds where it is wholly open, so that all of them make 1.
-pub(crate) fn weights() -> [f32; 2] {
-    [0, 1].map(|r| SHARES[r] / seen(EXTENT / WIDTH[r]))
-}
 
 /// Finds the openness and the bent normals of the hits of the range.
 pub(super) fn cones<S: Simd>(
@@ -337,7 +218,8 @@ fn start<S: Simd>(
     }
     let (origin, normal, word) = from(s, hits, at);
     let offset = load(s, &hits.offset, at);
-    let to = turn(normal, cone.to);
+    let [x, y, z] = cone.to;
+    let to = turn(normal, v3(x, y, z));
     let t = (offset * START).max(ball * (FREE * cone.cosine));
     let end = (solid.region)
         .leave(origin, to, splat(s, SURE * FULL), offset)
@@ -398,12 +280,11 @@ fn advance<S: Simd>(s: S, skins: bool, steps: u32, iteration: u32, q: &mut Scrat
         } else {
             (!gap & !open, least, gap | open)
         };
-        let rise = ((f - r) * z.max(1e-20).rough_recip()).clamp(-1.0, 1.0);
-        let slope = Lanes::select(z.above(0.0), m.mix(rise, BETA), m).min(STEEPEST);
+        let rise = rise(r, f, z);
+        let slope = Lanes::select(z.above(0.0), m.mix(rise, SMOOTHING), m).min(STEEPEST);
         let slope = Lanes::select(gap, splat(s, -1.0), slope);
         let edge = least.max(0.0) * CARE;
-        let to_edge =
-            (f - edge * t) * (2.0 * SHARE) * (slope.one_minus() + edge * 2.0).rough_recip();
+        let to_edge = reach(f, t, slope, edge);
         let old: S::u32s = (S::u32s::splat(s, iteration) - (word >> ORDINAL_BITS)) & ITERATIONS;
         let fresh = LaneMask(old.simd_lt(S::u32s::splat(s, steps - 1)));
         let late = LaneMask(old.simd_lt(S::u32s::splat(s, steps + skin::MORE - 1)));
@@ -456,33 +337,29 @@ fn advance<S: Simd>(s: S, skins: bool, steps: u32, iteration: u32, q: &mut Scrat
 
 /// Sums up what the cones of each hit see.
 #[inline(always)]
-fn combine<S: Simd>(s: S, to: &[[f32; 3]; DIRECTIONS], range: Range<usize>, q: &mut Scratch) {
+fn combine<S: Simd>(s: S, to: &[[f32; 3]; CONES], range: Range<usize>, q: &mut Scratch) {
     let (distances, weights) = (distances(), weights());
     for i in range.step_by(S::f32s::LEN) {
-        let mut clear = [splat(s, 0.0); DIRECTIONS];
-        for (k, clear) in clear.iter_mut().enumerate() {
-            let scale = 1.0 / (FULL - BLOCKED);
-            *clear = ((load(s, &q.clearance[k], i) - BLOCKED) * scale).clamp01() * EXTENT;
+        let mut clearance = [splat(s, 0.0); CONES];
+        for (k, of) in clearance.iter_mut().enumerate() {
+            *of = clear(load(s, &q.clearance[k], i));
         }
         let normal = load3(s, &q.hits.normal, i);
         let mut open = splat(s, 0.0);
-        let mut bent = normal * 1e-3;
+        let mut bent = normal * NORMAL_SHARE;
         for (k, (&w, apart)) in to.iter().zip(&distances).enumerate() {
             let mut behind = splat(s, -WIDTH[0]);
-            for (j, (&other, &distance)) in clear.iter().zip(apart).enumerate() {
+            for (j, (&other, &distance)) in clearance.iter().zip(apart).enumerate() {
                 if j != k {
                     behind = behind.max(left(other, distance));
                 }
             }
-            let behind = behind.min(0.0) * (1.0 / WIDTH[0]);
-            let before = clear[k] * (1.0 / WIDTH[ring(k)]);
-            let close = (before * (1.0 / CLOSENESS)).one_minus().max(0.0);
-            let share = seen(before + behind * close) * weights[ring(k)];
+            let ring = ring(k);
+            let share = share(clearance[k], behind, 1.0 / WIDTH[ring], weights[ring]);
             open = open + share;
-            bent = along(bent, turn(normal, w), share);
+            bent = along(bent, turn(normal, v3(w[0], w[1], w[2])), share);
         }
-        // with all cones open the sum is 1 up to rounding
-        store((open * 1.000_002).min(1.0), &mut q.hits.open, i);
+        store((open * WHOLE).min(1.0), &mut q.hits.open, i);
         // the normal decides where nothing is open
         store3(bent.normalize(), &mut q.hits.bent, i);
     }

@@ -1,15 +1,16 @@
 //! Occlusion by rays over the hemisphere: the reference.
 
 use crate::beam::{Aim, Penumbra, stream};
-use crate::sampling::{cosine_direction, sobol};
 use crate::simd::{load_words, splat};
 use crate::tile::{Scratch, Solid};
 use fearless_simd::{Simd, prelude::*};
 use std::ops::Range;
 use zeroset_number::lanes::LaneMask;
-use zeroset_number::{Lanes, Ops, Real, Vec3};
+use zeroset_number::{Lanes, Ops, Vec3};
+use zeroset_shade::occlusion::obscurance;
+use zeroset_shade::sampling::{UNIT, cosine_direction, sobol};
 
-/// A ray that counts the more, the farther it gets: `1 - exp(-tau d)` (Tomczak 2012, equation 3.23; Iones et al. 2003).
+/// A ray that counts the more, the farther it gets: see [`obscurance`].
 #[derive(Clone, Copy)]
 pub(super) struct Near {
     pub(super) tau: f32,
@@ -38,7 +39,7 @@ impl<S: Simd> Penumbra<S> for Near {
     }
     #[inline(always)]
     fn stopped(self, t: Lanes<S>) -> Lanes<S> {
-        (t * -self.tau).exp().one_minus()
+        obscurance(t, self.tau)
     }
 }
 
@@ -69,9 +70,8 @@ impl<S: Simd> Aim<S> for Around<'_> {
             Lanes::<S>(u.to_float::<S::f32s>()),
             Lanes::<S>(v.to_float::<S::f32s>()),
         );
-        let unit = 1.0 / 16_777_216.0;
         (
-            cosine_direction(normal, u * unit, v * unit),
+            cosine_direction(normal, u * UNIT, v * UNIT),
             splat(s, self.reach),
         )
     }

@@ -1,10 +1,8 @@
 //! Ambient occlusion: how much of the sky reaches the hits. All methods of the papers, and cones as the default.
 
-pub(crate) mod cones;
+mod cones;
 mod hemisphere;
 mod samples;
-
-pub(crate) use samples::EVANS;
 
 use crate::shadow::Hard;
 use crate::simd::{load, load_words, sided};
@@ -14,9 +12,6 @@ use std::ops::Range;
 use zeroset_eval::BATCH;
 use zeroset_number::Lanes;
 use zeroset_scene::settings::Occlusion;
-
-/// Up.
-pub(crate) const UP: [f32; 3] = [0.0, 1.0, 0.0];
 
 /// Finds the ambient visibility and the bent normals of the hits of the range.
 pub(crate) fn occlusion<S: Simd>(

@@ -1,6 +1,6 @@
 //! Occlusion from samples of the field along one way: the methods of the papers that are made for speed.
 
-use super::{UP, batches, value};
+use super::{batches, value};
 use crate::normal::sample;
 use crate::simd::{
     Chosen, along, first_lanes, load, load_words, load3, sided, splat, splat3, store,
@@ -9,7 +9,10 @@ use crate::tile::{Scratch, Solid};
 use fearless_simd::{Simd, prelude::*};
 use std::ops::Range;
 use zeroset_eval::BATCH;
-use zeroset_number::{Lanes, Ops, Real, v3};
+use zeroset_number::{Lanes, Ops, Real};
+use zeroset_shade::occlusion::{
+    BENT_FALL, EVANS, QUILEZ_FALL, UP, exponential_visibility, slant, visibility,
+};
 
 /// Occlusion less than this is none: no picture can show it.
 const NOTHING: f32 = 1.0 / 4096.0;
@@ -60,7 +63,7 @@ pub(super) fn quilez<S: Simd>(
                 }
             }
             if steps < 2 {
-                finish(s, scale * 0.5, range.clone(), q);
+                finish(s, scale * QUILEZ_FALL, range.clone(), q);
                 return;
             }
             q.beams.count = 0;
@@ -76,7 +79,7 @@ pub(super) fn quilez<S: Simd>(
                 let b = beams.count;
                 more.put3(load3(s, &hits.point, at), &mut beams.origin, b);
                 more.put3(load3(s, &hits.normal, at), &mut beams.direction, b);
-                more.put(short * 0.5f32.powi(steps as i32), &mut beams.light, b);
+                more.put(short * QUILEZ_FALL.powi(steps as i32), &mut beams.light, b);
                 let side = load_words(s, &hits.word, at) & crate::simd::INSIDE;
                 let ordinal = S::u32s::from_fn(
                     s,
@@ -117,7 +120,7 @@ fn nearer<S: Simd>(s: S, solid: &Solid<'_>, steps: u32, step: f32, scale: f32, q
             },
         );
         q.counts.occlusion += n as u64;
-        let weight = 0.5f32.powi(k as i32);
+        let weight = QUILEZ_FALL.powi(k as i32);
         for i in (0..n).step_by(S::f32s::LEN) {
             let f = sided(
                 load(s, &q.work.values().0, i),
@@ -128,17 +131,17 @@ fn nearer<S: Simd>(s: S, solid: &Solid<'_>, steps: u32, step: f32, scale: f32, q
         }
     }
     for (&word, &sum) in q.beams.word[..n].iter().zip(&q.beams.light[..n]) {
-        q.hits.open[(word & crate::march::ORDINAL) as usize] = 1.0 - (scale * sum).clamp(0.0, 1.0);
+        q.hits.open[(word & crate::march::ORDINAL) as usize] = visibility(sum, scale);
     }
     q.beams.count = 0;
 }
 
-/// `1 - clamp(scale sum, 0, 1)` of the sums that are in place of the visibility.
+/// [`visibility`] of the sums that are in place of the visibility.
 #[inline(always)]
 fn finish<S: Simd>(s: S, scale: f32, range: Range<usize>, q: &mut Scratch) {
     for i in range.step_by(S::f32s::LEN) {
-        let sum = load(s, &q.hits.open, i) * scale;
-        store(sum.clamp01().one_minus(), &mut q.hits.open, i);
+        let sum = load(s, &q.hits.open, i);
+        store(visibility(sum, scale), &mut q.hits.open, i);
     }
 }
 
@@ -181,7 +184,7 @@ pub(super) fn bent<S: Simd>(
                         },
                     );
                     q.counts.occlusion += n as u64;
-                    let weight = 1.1f32.powi(-(j as i32));
+                    let weight = BENT_FALL.powi(-(j as i32));
                     for i in (0..n).step_by(S::f32s::LEN) {
                         let way = (load3(s, &q.hits.normal, k + i) + up).length() * far;
                         let sum = load(s, &q.hits.open, k + i) + (way - value(s, q, k, i)) * weight;
@@ -193,9 +196,6 @@ pub(super) fn bent<S: Simd>(
         },
     );
 }
-
-/// Weights of the samples of [`evans`] (Evans 2006, listing 1).
-pub(crate) const EVANS: [f32; 4] = [1.0, 1.2, 1.4, 1.8];
 
 /// `exp(-scale sum_i w_i (d_i - f(x + d_i n')))` with `n' = n + bend up` and `d_i` doubling (Evans 2006, 9.6; Tomczak 2012,
 /// equation 3.26 with its sign mended), not above 1.
@@ -238,7 +238,7 @@ pub(super) fn evans<S: Simd>(
                     }
                 }
                 for i in (0..n).step_by(S::f32s::LEN) {
-                    let open = (load(s, &q.hits.open, k + i) * scale).min(0.0).exp();
+                    let open = exponential_visibility(load(s, &q.hits.open, k + i), scale);
                     store(open, &mut q.hits.open, k + i);
                 }
             }
@@ -252,8 +252,7 @@ pub(super) fn upward<S: Simd>(s: S, scale: f32, range: Range<usize>, q: &mut Scr
         #[inline(always)]
         || {
             for i in range.clone().step_by(S::f32s::LEN) {
-                let cosine = load3(s, &q.hits.normal, i).dot(v3(UP[0], UP[1], UP[2]));
-                store(cosine.one_minus(), &mut q.hits.open, i);
+                store(slant(load3(s, &q.hits.normal, i)), &mut q.hits.open, i);
             }
             finish(s, scale, range, q);
         },

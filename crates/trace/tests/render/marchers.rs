@@ -5,9 +5,9 @@ use crate::scenes::{blend, quick, reference, stream, tomczak};
 use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{March, Settings, Shadow};
+use zeroset_testkit::plain::dense;
 use zeroset_trace::CpuRenderer;
 use zeroset_trace::bench::city;
-use zeroset_trace::plain::dense;
 
 pub const MARCHERS: [March; 6] = [
     March::Fixed { step: 0.02 },

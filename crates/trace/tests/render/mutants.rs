@@ -6,8 +6,8 @@ use glam::Vec3;
 use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{March, Settings};
+use zeroset_testkit::plain::{self, Compiled, Mark, Probe, Quality};
 use zeroset_trace::CpuRenderer;
-use zeroset_trace::plain::{self, Compiled, Mark, Probe, Quality};
 
 fn scene() -> Scene {
     let mut scene = tomczak();

@@ -11,9 +11,9 @@ use zeroset_scene::material::{Material, Pattern};
 use zeroset_scene::render::{Renderer, Silent};
 use zeroset_scene::scene::{Object, Scene, SceneParts};
 use zeroset_scene::settings::{Antialias, Occlusion, Settings, Shadow};
+use zeroset_testkit::plain::{self, Compiled, Quality};
 use zeroset_trace::CpuRenderer;
 use zeroset_trace::bench::sphere_box_ground;
-use zeroset_trace::plain::{self, Compiled, Quality};
 
 pub fn shape(name: &str, params: &[f64]) -> Field {
     let entry = catalogue().primitive(name).expect("in the catalogue");

@@ -13,8 +13,8 @@ use zeroset_scene::camera::{Camera, Lens};
 use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Filter, March, Occlusion};
+use zeroset_testkit::plain::dense;
 use zeroset_trace::CpuRenderer;
-use zeroset_trace::plain::dense;
 
 /// A scene in the language, with cheap light.
 fn written(text: &str, size: u32) -> Scene {

@@ -1,6 +1,6 @@
 //! `bench frame --backend gpu`: whole pictures by the GPU and by the CPU's stream renderer, in turn.
 
-use super::frame::{Stages, psnr};
+use super::frame::Stages;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
@@ -166,4 +166,12 @@ impl GpuFrames {
             self.evaluations_per_pixel.total,
         )
     }
+}
+
+/// How alike two planes are, with values limited to what a screen shows: 10 log10(1 / mean square), dB.
+fn psnr(a: &[f32], b: &[f32]) -> f64 {
+    let shown = |x: f32| f64::from(x.clamp(0.0, 1.0)).powf(1.0 / 2.2);
+    let square = |(a, b): (&f32, &f32)| (shown(*a) - shown(*b)).powi(2);
+    let mean = a.iter().zip(b).map(square).sum::<f64>() / a.len().max(1) as f64;
+    -10.0 * mean.max(1e-12).log10()
 }

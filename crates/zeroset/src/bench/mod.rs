@@ -14,8 +14,6 @@ use zeroset_field::program::{Limits, Program};
 use zeroset_language::load::{Language, Options, load, load_text};
 use zeroset_scene::render::RenderError;
 use zeroset_scene::scene::Scene;
-use zeroset_scene::settings::{Antialias, Normals, Occlusion, Settings};
-use zeroset_scene::valid::SceneError;
 use zeroset_trace as trace;
 
 /// Three joined solids over a floor.
@@ -73,10 +71,8 @@ pub(crate) fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
                 return console.emit(&json::line(&found)?);
             }
             let row = |(name, evaluations): (&String, &f64)| {
-                let (share, missed) = (found.share_of_sphere[name], found.missed_hits[name]);
-                format!(
-                    "{name:16} {evaluations:8.2} evaluations a ray, {share:5.2} of sphere, {missed} hits missed"
-                )
+                let share = found.share_of_sphere[name];
+                format!("{name:16} {evaluations:8.2} evaluations a ray, {share:5.2} of sphere")
             };
             let rows: Vec<String> = found.evaluations_per_ray.iter().map(row).collect();
             console.print(&rows.join("\n"))
@@ -84,7 +80,7 @@ pub(crate) fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
         Measure::Frame(what) => {
             let scene = match &what.scene {
                 Some(path) => loaded(path)?,
-                None => sphere_box_ground()?,
+                None => trace::bench::frame(),
             };
             #[cfg(feature = "gpu")]
             if let Some(renderer) = crate::backend::gpu(what.backend, what.adapter.as_deref())? {
@@ -105,16 +101,14 @@ pub(crate) fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
             let e = found.evaluations_per_pixel;
             console.print(&format!(
                 "{}x{}, {} threads\n\
-                 {:.1} frames a second, {:.1} times the plain renderer ({:.1} ms a frame), {:.1} dB to its picture\n\
+                 {:.1} frames a second, {:.2} ms a frame\n\
                  evaluations a pixel: {:.1} (prepass {:.1}, march {:.1}, normal {:.1}, occlusion {:.1}, shadow {:.1}, \
                  material {:.1})",
                 found.size[0],
                 found.size[1],
                 found.threads,
                 found.frames_per_second,
-                found.simd_over_plain,
-                found.plain_milliseconds,
-                found.psnr,
+                found.milliseconds,
                 e.total,
                 e.prepass,
                 e.march,
@@ -125,22 +119,6 @@ pub(crate) fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
             ))
         }
     }
-}
-
-/// The scene of the frame benchmark: soft shadows, five samples of occlusion, a ray a pixel.
-fn sphere_box_ground() -> Result<Scene, SceneError> {
-    let scene = trace::bench::sphere_box_ground();
-    let settings = Settings {
-        occlusion: Occlusion::Quilez {
-            steps: 5,
-            step: 0.12,
-            scale: 1.5,
-        },
-        antialias: Antialias::None,
-        normals: Normals::Exact,
-        ..*scene.settings()
-    };
-    scene.with_settings(settings)
 }
 
 fn failed(error: RenderError) -> Failure {

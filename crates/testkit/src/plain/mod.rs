@@ -1,8 +1,9 @@
-//! The same algorithms, one ray at a time, in plain code: the reference that the stream is tested against and the baseline
-//! of its benchmark.
+//! The algorithms of the CPU renderer, one ray at a time, in plain code: the reference that the stream is tested against and the
+//! baseline of its benchmark.
 //!
-//! It shares the formulas of cameras, filters, patterns and light with the stream. All that the stream does in its own way
-//! is written anew here: marching (without cones), hits, normals, occlusion, shadows, samples and their filter.
+//! It shares the formulas of cameras, filters, patterns and light with the stream (`zeroset_shade`), and the constants of what
+//! marches. All that the stream does in its own way is written anew here: marching (without cones), hits, normals, occlusion,
+//! shadows, samples and their filter.
 
 mod ao;
 pub mod dense;
@@ -12,10 +13,6 @@ mod probe;
 
 pub use probe::{Compiled, Formula, Mark, Probe};
 
-use crate::job::MARKS_BEHIND;
-use crate::material::{Place, colour as pattern_colour};
-use crate::sampling::{point, radius, scramble, weight};
-use crate::shade::{Substance, colour, sky};
 use glam::Vec3;
 use light::Surface;
 use rayon::prelude::*;
@@ -26,14 +23,19 @@ use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::material::Material;
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Filter, Settings};
+use zeroset_shade::march::MARKS_BEHIND;
+use zeroset_shade::pattern::{Place, colour as pattern_colour};
+use zeroset_shade::sampling::{hit_seed, point, radius, scramble, weight};
 use zeroset_shade::skin::has_skins;
+use zeroset_shade::sky::{SkyColours, colour as sky};
+use zeroset_shade::surface::{Lighting, LocalMaterial, colour};
 use zeroset_shade::view::{Region, View};
 
-pub(crate) fn glam(v: zeroset_number::Vec3<f32>) -> Vec3 {
+fn glam(v: zeroset_number::Vec3<f32>) -> Vec3 {
     Vec3::new(v.x, v.y, v.z)
 }
 
-pub(crate) fn field(v: Vec3) -> zeroset_number::Vec3<f32> {
+fn field(v: Vec3) -> zeroset_number::Vec3<f32> {
     v3(v.x, v.y, v.z)
 }
 
@@ -169,7 +171,7 @@ impl Plain<'_> {
         let found = self.march(probe, o, d);
         let Some(end) = found.hit else {
             return Sample {
-                colour: glam(sky(self.scene.sky(), d.y)),
+                colour: glam(sky(&SkyColours::of(self.scene.sky()), d.y)),
                 hit: None,
                 steps: found.steps,
             };
@@ -191,11 +193,7 @@ impl Plain<'_> {
             offset,
             d,
         };
-        let key = scramble(
-            x,
-            y,
-            self.settings.seed ^ (index + 1).wrapping_mul(0x9e37_79b9),
-        );
+        let key = scramble(x, y, hit_seed(self.settings.seed, index));
         // inside a solid there is no sky: it is shown as if there were no solid
         let (open, bent) = if side < 0.0 {
             (1.0, normal)
@@ -205,20 +203,19 @@ impl Plain<'_> {
         let pixel = self.view.width(t, self.narrow(o, d)) / (self.samples() as f32).sqrt();
         let (what, shininess) = {
             let place = Place::new(field(p), field(normal), field(d), pixel);
-            self.substance(&mark, &place.with_orbit(mark.orbit))
+            self.local_material(&mark, &place.with_orbit(mark.orbit))
         };
         let light = self.light(probe, &surface, shininess);
-        let c = colour(
-            self.settings.shading,
-            self.scene.sky(),
-            &what,
-            field(light.diffuse),
-            field(light.gloss),
-            field(normal),
-            field(bent),
-            field(d),
+        let lighting = Lighting {
+            diffuse: field(light.diffuse),
+            gloss: field(light.gloss),
             open,
-        );
+            bent: field(bent),
+            normal: field(normal),
+            direction: field(d),
+        };
+        let heaven = SkyColours::of(self.scene.sky());
+        let c = colour(self.settings.shading, &heaven, &what, &lighting);
         let hit = Hit {
             t,
             residual: probe.value(p).abs(),
@@ -244,8 +241,8 @@ impl Plain<'_> {
         self.scene.materials().get(at).unwrap_or(&self.fallback)
     }
 
-    fn substance(&self, mark: &Mark, at: &Place<f32>) -> (Substance<f32>, f32) {
-        let of = |m: &Material, weight: f32| Substance {
+    fn local_material(&self, mark: &Mark, at: &Place<f32>) -> (LocalMaterial<f32>, f32) {
+        let of = |m: &Material, weight: f32| LocalMaterial {
             albedo: pattern_colour(&m.pattern, at) * weight,
             emission: field(m.emission * weight),
             specular: m.specular * weight,
@@ -259,7 +256,7 @@ impl Plain<'_> {
         }
         let second = self.material(mark.second);
         let b = of(second, mark.share);
-        let mixed = Substance {
+        let mixed = LocalMaterial {
             albedo: a.albedo + b.albedo,
             emission: a.emission + b.emission,
             specular: a.specular + b.specular,

@@ -1,9 +1,10 @@
 //! Primary rays and normals.
 
 use super::{Plain, Probe, field, glam};
-use crate::normal::{CENTRAL, NEIGHBOURS_18, NEIGHBOURS_26, TETRAHEDRON, step};
 use glam::Vec3;
 use zeroset_scene::settings::{March, Normals};
+use zeroset_shade::light;
+use zeroset_shade::normal::{CENTRAL, NEIGHBOURS_18, NEIGHBOURS_26, TETRAHEDRON, step};
 use zeroset_shade::view::ROUNDING;
 
 /// Where a ray ended.
@@ -181,7 +182,7 @@ impl Plain<'_> {
 
     /// The direction to a light, and its distance.
     pub(super) fn towards(source: &zeroset_scene::light::Source, p: Vec3) -> (Vec3, f32) {
-        let (to, distance) = crate::shadow::towards(source, field(p));
+        let (to, distance) = light::towards(source, field(p));
         (glam(to), distance)
     }
 }

@@ -1,11 +1,11 @@
 //! Shadows.
 
 use super::{Plain, Probe, field, glam};
-use crate::beam::{FIRST, LEAST, STOP};
-use crate::shade::arrival;
-use crate::shadow::{DARK, closest};
 use glam::Vec3;
 use zeroset_scene::settings::Shadow;
+use zeroset_shade::light::arrival;
+use zeroset_shade::secondary::{FIRST, LEAST, STOP};
+use zeroset_shade::shadow::{DARK, closest};
 use zeroset_shade::skin;
 use zeroset_shade::view::ROUNDING;
 

@@ -2,14 +2,15 @@
 
 use super::light::{Surface, passes};
 use super::{Plain, Probe, field, glam};
-use crate::ao::cones::{
-    BETA, BLOCKED, CARE, CLOSENESS, COSINES, DIRECTIONS, EMPTY, EXTENT, FREE, FULL, GROWTH, NARROW,
-    SHARE, START, STEEPEST, SURE, WIDTH, directions, distances, left, ring, seen, turn, weights,
-};
-use crate::ao::{EVANS, UP};
-use crate::sampling::{cosine_direction, point};
 use glam::Vec3;
+use zeroset_number::v3;
 use zeroset_scene::settings::Occlusion;
+use zeroset_shade::occlusion::{
+    BLOCKED, CARE, CLOSENESS, CONES, COSINES, EMPTY, EVANS, EXTENT, FREE, FULL, GROWTH, NARROW,
+    START, SURE, UP, WIDTH, directions, distances, left, ring, seen, turn, weights,
+};
+use zeroset_shade::sampling::{cosine_direction, point};
+use zeroset_shade::secondary::{SHARE, SMOOTHING, STEEPEST};
 
 impl Plain<'_> {
     /// Ambient visibility and the bent normal.
@@ -109,8 +110,8 @@ impl Plain<'_> {
         if ball >= far {
             return (1.0, at.normal);
         }
-        let to = directions().map(|w| glam(turn(field(at.normal), w)));
-        let clear: [f32; DIRECTIONS] = std::array::from_fn(|k| {
+        let to = directions().map(|[x, y, z]| glam(turn(field(at.normal), v3(x, y, z))));
+        let clear: [f32; CONES] = std::array::from_fn(|k| {
             let cosine = COSINES[ring(k)];
             let t = (at.offset * START).max(ball * FREE * cosine);
             let end = self
@@ -198,7 +199,7 @@ fn clearance(
             return least;
         }
         if last.is_some() {
-            slope += BETA * (rise - slope);
+            slope += SMOOTHING * (rise - slope);
         }
         slope = slope.min(STEEPEST);
         let edge = CARE * least;

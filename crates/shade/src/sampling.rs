@@ -6,7 +6,7 @@ use zeroset_scene::settings::Filter;
 /// The first two dimensions of Sobol's sequence (1967), as fractions of 2^32: any 2^k first points are spread evenly over
 /// all boxes of area 2^-k that halving the sides gives. Scrambling by exclusive or keeps that (Kollig and Keller 2002).
 #[inline(always)]
-pub(crate) fn sobol(index: u32) -> [u32; 2] {
+pub fn sobol(index: u32) -> [u32; 2] {
     let (mut i, mut direction, mut second) = (index, 1 << 31, 0);
     while i != 0 {
         if i & 1 == 1 {
@@ -18,12 +18,24 @@ pub(crate) fn sobol(index: u32) -> [u32; 2] {
     [index.reverse_bits(), second]
 }
 
+/// The numbers of the generator: factor and summand of its congruential step.
+pub const PCG: [u32; 2] = [1_664_525, 1_013_904_223];
+
+/// What the seeds of a pixel's hits are apart: 2^32 over the golden ratio.
+pub const HIT_SEEDS: u32 = 0x9e37_79b9;
+
+/// The seed of what is random at the hit of ray number `index` of a pixel: not that of the pixel's own samples.
+#[inline(always)]
+pub fn hit_seed(seed: u32, index: u32) -> u32 {
+    seed ^ (index + 1).wrapping_mul(HIT_SEEDS)
+}
+
 /// Two random numbers of a pixel: the generator pcg3d (Jarzynski and Olano 2020).
 #[inline(always)]
-pub(crate) fn scramble(x: u32, y: u32, seed: u32) -> [u32; 2] {
+pub fn scramble(x: u32, y: u32, seed: u32) -> [u32; 2] {
     let mut v = [x, y, seed].map(
         #[inline(always)]
-        |c| c.wrapping_mul(1_664_525).wrapping_add(1_013_904_223),
+        |c| c.wrapping_mul(PCG[0]).wrapping_add(PCG[1]),
     );
     for _ in 0..2 {
         v[0] = v[0].wrapping_add(v[1].wrapping_mul(v[2]));
@@ -37,22 +49,25 @@ pub(crate) fn scramble(x: u32, y: u32, seed: u32) -> [u32; 2] {
     [v[0], v[1]]
 }
 
+/// One over the numbers that [`unit`] tells apart: as many as single precision has.
+pub const UNIT: f32 = 1.0 / 16_777_216.0;
+
 /// A fraction of 2^32 as a number in [0, 1).
 #[inline(always)]
-pub(crate) fn unit(x: u32) -> f32 {
-    (x >> 8) as f32 * (1.0 / 16_777_216.0)
+pub fn unit(x: u32) -> f32 {
+    (x >> 8) as f32 * UNIT
 }
 
 /// Sample number `index` of a pixel, in [0, 1) by [0, 1).
 #[inline(always)]
-pub(crate) fn point(index: u32, scramble: [u32; 2]) -> [f32; 2] {
+pub fn point(index: u32, scramble: [u32; 2]) -> [f32; 2] {
     let [x, y] = sobol(index);
     [unit(x ^ scramble[0]), unit(y ^ scramble[1])]
 }
 
 /// A direction around `normal`, spread by the cosine law, from a point of the unit square.
 #[inline(always)]
-pub(crate) fn cosine_direction<R: Real<Scalar = f32>>(normal: Vec3<R>, u: R, v: R) -> Vec3<R> {
+pub fn cosine_direction<R: Real>(normal: Vec3<R>, u: R, v: R) -> Vec3<R> {
     let (sin, cos) = (v * std::f32::consts::TAU).sin_cos();
     let r = u.sqrt();
     let z = u.one_minus().max(0.0).sqrt();
@@ -62,7 +77,7 @@ pub(crate) fn cosine_direction<R: Real<Scalar = f32>>(normal: Vec3<R>, u: R, v: 
 
 /// Two directions that make an orthonormal basis with a third (Duff et al. 2017).
 #[inline(always)]
-pub(crate) fn basis<R: Real<Scalar = f32>>(n: Vec3<R>) -> [Vec3<R>; 2] {
+pub fn basis<R: Real>(n: Vec3<R>) -> [Vec3<R>; 2] {
     let sign = R::select(n.z.negative(), n.z.lit(-1.0), n.z.lit(1.0));
     let a = -(sign + n.z).recip();
     let b = n.x * n.y * a;
@@ -73,7 +88,7 @@ pub(crate) fn basis<R: Real<Scalar = f32>>(n: Vec3<R>) -> [Vec3<R>; 2] {
 }
 
 /// Pixels around a sample's own, on each side, that its filter reaches.
-pub(crate) const fn radius(filter: Filter) -> usize {
+pub const fn radius(filter: Filter) -> usize {
     match filter {
         Filter::Box => 0,
         Filter::Tent => 1,
@@ -83,7 +98,7 @@ pub(crate) const fn radius(filter: Filter) -> usize {
 
 /// Weight of a sample along one axis, at `x` pixels from a pixel's middle.
 #[inline(always)]
-pub(crate) fn weight<R: Real<Scalar = f32>>(filter: Filter, x: R) -> R {
+pub fn weight<R: Real>(filter: Filter, x: R) -> R {
     let x = x.abs();
     let zero = x.lit(0.0);
     match filter {

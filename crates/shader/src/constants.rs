@@ -1,0 +1,107 @@
+//! Constants that the CPU's renderer and shaders share, as WGSL.
+
+use std::fmt::Write;
+use zeroset_field::program::FLAT;
+use zeroset_shade::{march, occlusion, pattern, sampling, secondary, shadow, skin, view};
+
+/// The value of a constant.
+enum Value {
+    Number(f32),
+    Whole(u32),
+    Vector(&'static [f32]),
+}
+use Value::{Number, Vector, Whole};
+
+/// All of them: names in WGSL and values.
+fn constants() -> Vec<(&'static str, Value)> {
+    let weights = occlusion::weights();
+    vec![
+        // evaluations in single precision are off by about this share of the largest coordinate
+        ("ROUNDING", Number(view::ROUNDING)),
+        ("EPSILON", Number(f32::EPSILON)),
+        // what no distance reaches: WGSL has no infinity
+        ("FAR", Number(f32::MAX)),
+        ("LEAST_NORMAL", Number(f32::MIN_POSITIVE)),
+        ("FLAT_SLOPE", Number(FLAT)),
+        ("FINE_ROWS", Number(view::FINE as f32)),
+        ("GUESS_BEYOND", Number(march::GUESS_BEYOND)),
+        ("GUESS_LONGEST", Number(march::GUESS_LONGEST)),
+        ("TOWARDS", Number(march::TOWARDS)),
+        ("LEAST_SHARE", Number(march::LEAST_SHARE)),
+        (
+            "LEAST_SHARE_OF_FRACTALS",
+            Number(march::LEAST_SHARE_OF_FRACTALS),
+        ),
+        ("LEAST_ROUNDINGS", Number(march::LEAST_ROUNDINGS)),
+        (
+            "LEAST_ROUNDINGS_BEHIND",
+            Number(march::LEAST_ROUNDINGS_BEHIND),
+        ),
+        ("REFINEMENTS", Whole(march::REFINEMENTS)),
+        ("MIDDLE", Whole(march::MIDDLE)),
+        ("SETTLED", Number(march::SETTLED)),
+        ("MARKS_BEHIND", Number(march::MARKS_BEHIND)),
+        ("SKIN_BEHIND", Number(skin::BEHIND)),
+        // the prepass
+        ("CONE_NEAR", Number(march::CONE_NEAR)),
+        ("CONE_STEPS", Whole(march::CONE_STEPS)),
+        ("CONE_SMOOTHING", Number(march::CONE_SMOOTHING)),
+        // rays from surfaces
+        ("SECONDARY_FIRST", Number(secondary::FIRST)),
+        ("SECONDARY_STOP", Number(secondary::STOP)),
+        ("SECONDARY_LEAST", Number(secondary::LEAST)),
+        ("SECONDARY_SMOOTHING", Number(secondary::SMOOTHING)),
+        ("SECONDARY_STEEPEST", Number(secondary::STEEPEST)),
+        ("DARK", Number(shadow::DARK)),
+        // occlusion
+        ("UP", Vector(&occlusion::UP)),
+        ("QUILEZ_FALL", Number(occlusion::QUILEZ_FALL)),
+        ("BENT_FALL", Number(occlusion::BENT_FALL)),
+        ("EVANS", Vector(&occlusion::EVANS)),
+        ("CONES", Whole(occlusion::CONES as u32)),
+        ("CONES_HIGH", Whole(occlusion::HIGH as u32)),
+        ("CONE_COSINES", Vector(&occlusion::COSINES)),
+        ("CONE_WEIGHT_HIGH", Number(weights[0])),
+        ("CONE_WEIGHT_LOW", Number(weights[1])),
+        ("CONE_WIDTH", Vector(&occlusion::WIDTH)),
+        ("CONE_FULL", Number(occlusion::FULL)),
+        ("CONE_BLOCKED", Number(occlusion::BLOCKED)),
+        ("CONE_CARE", Number(occlusion::CARE)),
+        ("CONE_SURE", Number(occlusion::SURE)),
+        ("CONE_START", Number(occlusion::START)),
+        ("CONE_FREE", Number(occlusion::FREE)),
+        ("CONE_MORE", Whole(skin::MORE)),
+        ("CONE_WHOLE", Number(occlusion::WHOLE)),
+        ("CONE_NORMAL_SHARE", Number(occlusion::NORMAL_SHARE)),
+        ("BALL_GROWTH", Number(occlusion::GROWTH)),
+        ("BALL_NARROW", Number(occlusion::NARROW)),
+        ("BALL_EMPTY", Number(occlusion::EMPTY)),
+        // sampling
+        ("PCG_FACTOR", Whole(sampling::PCG[0])),
+        ("PCG_SUMMAND", Whole(sampling::PCG[1])),
+        ("HIT_SEEDS", Whole(sampling::HIT_SEEDS)),
+        ("UNIT", Number(sampling::UNIT)),
+        // patterns
+        ("LEAST_WEIGHT", Number(pattern::LEAST_WEIGHT)),
+    ]
+}
+
+/// Their declarations.
+pub(crate) fn declarations() -> String {
+    let mut text = String::new();
+    for (name, value) in constants() {
+        let (kind, value) = match value {
+            Number(x) => ("f32".to_owned(), format!("{x:?}f")),
+            Whole(n) => ("u32".to_owned(), format!("{n}u")),
+            Vector(v) => {
+                let kind = format!("vec{}f", v.len());
+                let of: Vec<String> = v.iter().map(|x| format!("{x:?}f")).collect();
+                let value = format!("{kind}({})", of.join(", "));
+                (kind, value)
+            }
+        };
+        // writing to a string cannot fail
+        let _ = writeln!(text, "const {name}: {kind} = {value};");
+    }
+    text
+}
