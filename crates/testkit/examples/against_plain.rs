@@ -28,16 +28,19 @@ fn main() {
     let renderer = CpuRenderer::new(Some(threads)).expect("threads");
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
     let pool = pool.build().expect("threads");
-    let picture = renderer.prepare(&scene).expect("a program");
+    let picture = renderer
+        .prepare_scene(scene.clone().into())
+        .expect("a program");
     let program = picture.program();
     let [width, height] = scene.settings().size;
-    let mut film = Film::with(width, height, &[Plane::Colour]);
+    let mut film = Film::new(0, 0);
     let (mut streamed, mut plainly, mut reference) = (f64::MAX, f64::MAX, None);
     for _ in 0..PLAIN {
         for _ in 0..STREAMED {
             let start = Instant::now();
-            let done = renderer.render_into(&picture, &mut film, &Silent);
-            done.expect("a picture");
+            film = picture
+                .render_part([width, height], &[Plane::Colour], &Silent)
+                .1;
             streamed = streamed.min(start.elapsed().as_secs_f64());
         }
         let start = Instant::now();

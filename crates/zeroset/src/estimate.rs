@@ -3,7 +3,7 @@
 use serde::Serialize;
 use std::thread;
 use std::time::{Duration, Instant};
-use zeroset_scene::film::{Film, Plane};
+use zeroset_scene::film::Plane;
 use zeroset_scene::render::{Observer, RenderError};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::Antialias;

@@ -10,7 +10,6 @@ use zeroset_catalogue::{Dimension, LARGE, SMALL};
 use zeroset_scene::light::{Light, Sky, Source};
 use zeroset_scene::material::Material;
 use zeroset_scene::scene::Object;
-use zeroset_scene::settings::{Occlusion, Shadow};
 use zeroset_scene::valid::LIGHTS;
 
 const GROUP: &str = "Stage";

@@ -3,6 +3,7 @@
 mod elementary;
 mod formulas;
 mod gradient;
+mod grid;
 mod hash;
 mod interval;
 mod record;

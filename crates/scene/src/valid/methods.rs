@@ -43,6 +43,5 @@ fn method<T: Choice>(chosen: &T, samples: u32) -> Check {
 
 /// Whether a number of the settings is what is allowed.
 pub(super) fn setting(param: Param, value: Value) -> Check {
-    (param.check(value))
-        .map_err(|refused| SceneError::new(Fault::Method(refused)).at(param.name))
+    (param.check(value)).map_err(|refused| SceneError::new(Fault::Method(refused)).at(param.name))
 }

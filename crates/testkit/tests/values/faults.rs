@@ -4,7 +4,7 @@ use crate::{check_named, on};
 use glam::Vec3;
 use std::sync::Arc;
 use zeroset::gpu::testing;
-use zeroset::scene::film::Film;
+use zeroset::scene::accumulator::Accumulator;
 use zeroset::scene::light::Source;
 use zeroset::scene::material::{Image, Pattern};
 use zeroset::scene::render::Silent;
@@ -65,7 +65,7 @@ fn with_octaves(scene: &mut SceneParts, more: u32) {
 }
 
 fn with_filter(scene: &mut SceneParts, other: Filter) {
-    if let Antialias::Supersample { filter, .. } = &mut scene.settings().antialias {
+    if let Antialias::Supersample { filter, .. } = &mut scene.settings.antialias {
         *filter = other;
     }
 }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use std::time::Instant;
-use zeroset_scene::film::{Film, Plane};
+use zeroset_scene::film::Plane;
 use zeroset_scene::render::{Evaluations, RenderError, Renderer, Silent};
 use zeroset_scene::scene::Scene;
 use zeroset_trace::CpuRenderer;

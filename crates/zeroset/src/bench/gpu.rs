@@ -5,6 +5,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 use zeroset_gpu::{GpuRenderer, Timings};
+use zeroset_scene::accumulator::Accumulator;
 use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::render::{RenderError, Silent};
 use zeroset_scene::scene::Scene;
@@ -97,7 +98,7 @@ pub(crate) fn frame(
         reason: "it did not say how long a picture took".to_owned(),
         advice: None,
     })?;
-    let pixels = f64::from(width) * f64::from(height);
+    let pixels = f64::from(settings.size[0]) * f64::from(settings.size[1]);
     let info = best.adapter.clone();
     Ok(GpuFrames {
         adapter: info.name,
