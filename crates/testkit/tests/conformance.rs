@@ -389,7 +389,7 @@ const FAULTS: [(&str, &str, &str, Plane); 10] = [
     (
         "a sky that is dark",
         "frame.sky_bottom, frame.ambient,",
-        "frame.sky_bottom, 0.8 * frame.ambient,",
+        "frame.sky_bottom, 0.5 * frame.ambient,",
         Plane::Colour,
     ),
     (
