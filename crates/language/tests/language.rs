@@ -443,11 +443,11 @@ fn every_method_can_be_written() {
     }
     each::<March>(
         |m| format!("show(sphere())\nrender(march = {m})"),
-        |s| s.settings.march,
+        |s| s.settings().march,
     );
     each::<Normals>(
         |m| format!("show(sphere())\nrender(normals = {m})"),
-        |s| s.settings.normals,
+        |s| s.settings().normals,
     );
     each::<Occlusion>(
         |m| format!("show(sphere(), ao = {m})"),
@@ -455,23 +455,23 @@ fn every_method_can_be_written() {
     );
     each::<Occlusion>(
         |m| format!("show(sphere())\nrender(ao = {m})"),
-        |s| s.settings.occlusion,
+        |s| s.settings().occlusion,
     );
     each::<Antialias>(
         |m| format!("show(sphere())\nrender(aa = {m})"),
-        |s| s.settings.antialias,
+        |s| s.settings().antialias,
     );
     each::<Shading>(
         |m| format!("show(sphere())\nrender(shading = {m})"),
-        |s| s.settings.shading,
+        |s| s.settings().shading,
     );
     each::<Shadow>(
         |m| format!("show(sphere())\nsun(shadow = {m})"),
-        |s| s.lights[0].shadow,
+        |s| s.lights()[0].shadow,
     );
     each::<Filter>(
         |m| format!("show(sphere())\nrender(aa = supersample(filter = {m}))"),
-        |s| match s.settings.antialias {
+        |s| match s.settings().antialias {
             Antialias::Supersample { filter, .. } => filter,
             Antialias::None => panic!("no filter"),
         },

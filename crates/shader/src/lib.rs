@@ -1,7 +1,8 @@
 //! Shaders of Zeroset: WGSL and GLSL for any scene. Nothing here needs a GPU.
 //!
-//! A module is put together from the recorded field ([`zeroset_field`]), the stage files in `stage/` (each named like its
-//! twin of the CPU renderer) and structs that are declared once, in [`layout`].
+//! A module is put together from the recorded field ([`zeroset_field`]), the recorded formulas and the constants of
+//! [`zeroset_shade`], the stage files in `stage/` (what marches, named like its twin of the CPU renderer, and what reads
+//! buffers) and structs that are declared once, in [`layout`].
 //!
 //! ```
 //! use zeroset_field::shape::sphere;

@@ -23,14 +23,15 @@ fn main() {
         }
         None => bench::city(),
     };
-    scene.settings = Settings {
+    let plain = Settings {
         size: [SIDE, SIDE],
         antialias: Antialias::None,
         occlusion: Occlusion::None,
-        ..scene.settings()
+        ..*scene.settings()
     };
+    scene.edit(|s| s.settings = plain).expect("a scene");
     let renderer = CpuRenderer::new(None).expect("threads");
-    let picture = renderer.prepare(&scene).expect("a program");
+    let picture = renderer.prepare_scene(scene.clone().into()).expect("a program");
     let solid = surely_hit(picture.program(), &scene);
     for (name, march, prepass) in [
         ("fixed", March::Fixed { step: 0.02 }, false),
@@ -45,13 +46,13 @@ fn main() {
             March::Fixed { .. } => 5000,
             _ => scene.settings().max_steps,
         };
-        let mut scene = scene.clone();
-        scene.settings = Settings {
+        let settings = Settings {
             march,
             prepass,
             max_steps,
-            ..scene.settings()
+            ..plain
         };
+        let scene = scene.clone().with_settings(settings).expect("a scene");
         let film = renderer.render(&scene, &Silent).expect("a picture").film;
         let pixels = solid.iter().zip(film.plane(Plane::Depth));
         let missed = pixels

@@ -387,7 +387,7 @@ const FAULTS: [(&str, &str, &str, Plane); 10] = [
     (
         "a sky that is dark",
         "frame.sky_bottom, frame.ambient,",
-        "frame.sky_bottom, 0.8 * frame.ambient,",
+        "frame.sky_bottom, 0.5 * frame.ambient,",
         Plane::Colour,
     ),
     (
@@ -430,7 +430,7 @@ fn planted_faults_are_noticed() {
         let mut job = gpu.job(scene).expect("a job");
         assert!(job.source.contains(from), "no `{from}` in the shader");
         job.source = job.source.replace(from, to).into();
-        let mut sums = Accumulator::new(SIZE, scene.settings().antialias, &Plane::ALL);
+        let mut sums = zeroset::scene::accumulator::Accumulator::new(SIZE, scene.settings().antialias, &Plane::ALL);
         let samples = 0..sums.wanted();
         gpu.sample(&job, samples, &mut sums, &Silent)
             .expect("a picture");

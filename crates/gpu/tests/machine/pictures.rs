@@ -170,7 +170,7 @@ fn a_scene_that_fits_into_no_buffer_is_an_error() {
         return;
     }
     let job = zeroset_gpu::Job {
-        table: vec![[1.0; 4]; largest as usize / 16 + 1],
+        table: vec![[1.0; 4]; largest as usize / 16 + 1].into(),
         ..toy([20, 20], 1, 0.0)
     };
     let error = renderer
