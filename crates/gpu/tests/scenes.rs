@@ -109,7 +109,11 @@ fn who_cancels_does_not_wait_for_the_compiler() {
         let after = Duration::from_millis(after);
         let patience = Patience(Instant::now(), after);
         let planes = [zeroset_scene::film::Plane::Colour];
-        let mut sums = zeroset_scene::accumulator::Accumulator::new([96, 64], scene.settings().antialias, &planes);
+        let mut sums = zeroset_scene::accumulator::Accumulator::new(
+            [96, 64],
+            scene.settings().antialias,
+            &planes,
+        );
         let samples = 0..sums.wanted();
         match renderer.sample(&job, samples, &mut sums, &patience) {
             Err(GpuError::Scene(RenderError::Cancelled)) => {}

@@ -358,7 +358,8 @@ mod tests {
 
     fn image(loaded: &Loaded) -> std::sync::Arc<zeroset_scene::material::Image> {
         let found = loaded
-            .scene.materials()
+            .scene
+            .materials()
             .iter()
             .find_map(|m| match &m.pattern {
                 zeroset_scene::material::Pattern::Triplanar { image, .. } => Some(image.clone()),

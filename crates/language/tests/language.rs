@@ -451,7 +451,7 @@ fn every_method_can_be_written() {
     );
     each::<Occlusion>(
         |m| format!("show(sphere(), ao = {m})"),
-        |s| s.objects[0].occlusion.expect("its own"),
+        |s| s.objects()[0].occlusion.expect("its own"),
     );
     each::<Occlusion>(
         |m| format!("show(sphere())\nrender(ao = {m})"),

@@ -31,7 +31,9 @@ fn main() {
     };
     scene.edit(|s| s.settings = plain).expect("a scene");
     let renderer = CpuRenderer::new(None).expect("threads");
-    let picture = renderer.prepare_scene(scene.clone().into()).expect("a program");
+    let picture = renderer
+        .prepare_scene(scene.clone().into())
+        .expect("a program");
     let solid = surely_hit(picture.program(), &scene);
     for (name, march, prepass) in [
         ("fixed", March::Fixed { step: 0.02 }, false),

@@ -430,7 +430,11 @@ fn planted_faults_are_noticed() {
         let mut job = gpu.job(scene).expect("a job");
         assert!(job.source.contains(from), "no `{from}` in the shader");
         job.source = job.source.replace(from, to).into();
-        let mut sums = zeroset::scene::accumulator::Accumulator::new(SIZE, scene.settings().antialias, &Plane::ALL);
+        let mut sums = zeroset::scene::accumulator::Accumulator::new(
+            SIZE,
+            scene.settings().antialias,
+            &Plane::ALL,
+        );
         let samples = 0..sums.wanted();
         gpu.sample(&job, samples, &mut sums, &Silent)
             .expect("a picture");

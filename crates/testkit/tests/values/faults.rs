@@ -334,7 +334,11 @@ fn faults_in_shaders_are_noticed() {
             planted.set(planted.get() || job.source.contains(from));
             job.source = job.source.replace(from, to).into();
             let settings = scene.settings();
-            let mut sums = Accumulator::new(settings.size, settings.antialias, &zeroset::scene::film::Plane::ALL);
+            let mut sums = Accumulator::new(
+                settings.size,
+                settings.antialias,
+                &zeroset::scene::film::Plane::ALL,
+            );
             let samples = 0..sums.wanted();
             gpu.sample(&job, samples, &mut sums, &Silent)
                 .expect("a picture");

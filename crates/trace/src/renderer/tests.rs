@@ -272,7 +272,7 @@ fn updated_scenes_are_new_scenes() {
         assert!(sums.into_film() == fresh);
     };
     check(&scene);
-    let plain = |s: &mut SceneParts| {
+    let plain = |s: &mut zeroset_scene::scene::SceneParts| {
         s.settings.occlusion = Occlusion::None;
         s.lights.clear();
     };
