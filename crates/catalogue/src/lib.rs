@@ -21,6 +21,8 @@
 //! # Ok::<(), &str>(())
 //! ```
 
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
+
 use crate::bounds::{Aabb, Exactness};
 use zeroset_number::{Args, Real, Vec2, Vec3, length2, v2, v3};
 

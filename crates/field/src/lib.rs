@@ -22,6 +22,8 @@
 //! # }
 //! ```
 
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
+
 mod compile;
 pub mod field;
 pub mod formula;

@@ -5,7 +5,8 @@ use crate::error::GpuError;
 use crate::fault::Faults;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 use wgpu::{BufferUsages, ErrorFilter, Features, PollError, PollType, SubmissionIndex};
 use zeroset_scene::render::RenderError;
 

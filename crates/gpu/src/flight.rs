@@ -7,7 +7,7 @@ use crate::pipeline::{Pipelines, STAGES};
 use crate::timing::Stage;
 use std::collections::VecDeque;
 use std::sync::Arc;
-use std::time::Instant;
+use web_time::Instant;
 use wgpu::{BindGroup, Buffer, BufferUsages, CommandEncoder, MapMode, QuerySet, SubmissionIndex};
 use zeroset_shader::entry::{Binding, ENTRIES};
 use zeroset_shader::layout::Tile;

@@ -28,6 +28,8 @@
 //! | `picture` | one picture: bands, stages, tiles |
 //! | `renderer` | the renderer, and what is done when the device fails |
 
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
+
 mod adapter;
 mod band;
 mod device;

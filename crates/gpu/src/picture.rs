@@ -10,7 +10,7 @@ use crate::pipeline::{Layouts, Pipelines, STAGES, Set};
 use crate::timing::{Stage, Timings};
 use std::ops::Range;
 use std::sync::Arc;
-use std::time::Instant;
+use web_time::Instant;
 use wgpu::MapMode;
 use zeroset_scene::accumulator::{Accumulator, Sum};
 use zeroset_scene::render::{Evaluations, Observer, RenderError, Statistics};

@@ -12,7 +12,7 @@ use crate::pipeline::{Cache, Layouts};
 use crate::timing::Timings;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
+use web_time::Instant;
 use zeroset_scene::accumulator::Accumulator;
 use zeroset_scene::camera::Camera;
 use zeroset_scene::render::{Observer, Prepared, RenderError, Renderer, Statistics};

@@ -1,7 +1,7 @@
 //! What loading may take: bytes that are charged before they are asked for, and time.
 
 use crate::limits::Limits;
-use std::time::Instant;
+use web_time::Instant;
 
 /// The part of the limit `memory` that loading may take: the picture needs the rest, and a scene that ends in an error
 /// never needs a picture.

@@ -207,6 +207,10 @@ fn with_own(path: &Path, mut files: Vec<PathBuf>) -> Vec<PathBuf> {
 
 /// Runs what may call itself as deep as the limits allow: on a thread that has a stack for it. A browser has no threads, and
 /// runs it where it is.
+#[allow(
+    clippy::disallowed_methods,
+    reason = "a thread only where there are threads"
+)]
 fn on_a_deep_stack<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, Failed> {
     if cfg!(target_family = "wasm") {
         return Ok(work());

@@ -24,11 +24,14 @@
 //! # }
 //! ```
 
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
+
 pub mod assets;
 mod budget;
 pub mod colour;
 pub mod document;
 mod draft;
+#[allow(clippy::disallowed_methods, reason = "the room that reads files")]
 mod files;
 pub mod framing;
 mod images;
@@ -40,4 +43,8 @@ pub mod naming;
 pub mod report;
 pub mod starlark;
 mod trees;
+#[allow(
+    clippy::disallowed_methods,
+    reason = "files that change, and waiting for them"
+)]
 pub mod watch;

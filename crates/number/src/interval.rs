@@ -7,9 +7,13 @@
 use super::data::Data;
 use super::list::fold_list;
 use super::real::{Ends, Masked, Ops, Real, State, interpolate, steps};
-use super::vector::Vec3;
+use super::scalar::F64;
+use super::vector::{Vec3, v3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+
+/// Cells of a grid that a range is taken from exactly; over more of them, that of their nodes counts.
+const MOST_CELLS: f64 = 8.0;
 
 /// All numbers from `lo` to `hi`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -316,14 +320,45 @@ impl Real for Interval {
         }
     }
     fn sample(store: &Data, grid: Self, nodes: Vec3<Self>, p: Vec3<Self>) -> Self {
-        // within one cell, ranges are followed through the interpolation; what is interpolated never leaves its nodes
-        let p = p.map(|c| c.max(0.0));
-        let nodes_of = Interval::fetch(
-            store,
-            grid,
-            p.map(|c| Interval::new(c.lo.floor(), c.hi.floor() + 1.0)),
-        );
-        interpolate(store, grid, nodes, p).intersect(nodes_of)
+        let Some(samples) = store.grids.get(grid.lo as usize) else {
+            return Interval::WHOLE;
+        };
+        let n = samples.nodes().map(f64::from);
+        let held = |axis: usize| {
+            let c = p.array()[axis];
+            [c.lo, c.hi].map(|x| x.clamp(0.0, n[axis] - 1.0))
+        };
+        let held = [held(0), held(1), held(2)];
+        let cell = |axis: usize, x: f64| x.floor().min(n[axis] - 2.0);
+        let cells = [0, 1, 2].map(|axis| held[axis].map(|x| cell(axis, x)));
+        let count: f64 = cells
+            .iter()
+            .map(|[first, last]| last - first + 1.0)
+            .product();
+        if count > MOST_CELLS {
+            // what is interpolated never leaves its nodes
+            return samples.range(cells.map(|[first, last]| Interval::new(first, last + 1.0)));
+        }
+        // in a cell the function is linear along each axis: over a box it is largest and smallest at corners
+        let corners = |axis: usize| {
+            let ([first, last], [lo, hi]) = (cells[axis], held[axis]);
+            let planes = (first as u32 + 1..=last as u32).map(f64::from);
+            [lo, hi].into_iter().chain(planes).collect::<Vec<f64>>()
+        };
+        let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
+        let nodes = nodes.map(|n| F64(n.lo));
+        for x in corners(0) {
+            for y in corners(1) {
+                for z in corners(2) {
+                    let at = v3(F64(x), F64(y), F64(z));
+                    let value = interpolate(store, F64(grid.lo), nodes, at).0;
+                    (lo, hi) = (lo.min(value), hi.max(value));
+                }
+            }
+        }
+        // for the roundings of other number types
+        let hair = 1e-12 * lo.abs().max(hi.abs());
+        Interval::rounded(lo - hair, hi + hair)
     }
     fn constant(c: f64) -> Self {
         // 3 is meant to be 3, but pi stands for a number beside it

@@ -48,6 +48,8 @@
 //! [`Real::select`] where the two sides agree, through [`Real::choose`] where they do not, and loops through
 //! [`Real::repeat_while`] and [`Args::fold`].
 
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
+
 pub mod args;
 pub mod data;
 pub mod dual;

@@ -35,6 +35,8 @@
 //!
 //! A renderer is whatever implements [`Renderer`](render::Renderer): it turns a scene into a [`Film`](film::Film).
 
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
+
 pub mod accumulator;
 pub mod camera;
 pub mod colour;

@@ -18,6 +18,8 @@
 //! assert_eq!(direction.array(), [0.0, 0.0, -1.0]);
 //! ```
 
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
+
 pub mod light;
 pub mod march;
 pub mod normal;

@@ -25,6 +25,8 @@
 //! # }
 //! ```
 
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
+
 mod ao;
 mod beam;
 pub mod bench;

@@ -2,7 +2,8 @@
 
 use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 use zeroset_scene::render::Observer;
 
 /// Instructions of the field's program, times points, between two questions at most: some tenths of a millisecond where an

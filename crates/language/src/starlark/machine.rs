@@ -13,7 +13,8 @@ use starlark_syntax::syntax::ast::{AstExpr, AstStmt};
 use std::collections::HashMap;
 use std::rc::Rc;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// Steps between two looks at the clock.
 const CLOCK: u64 = 1024;

@@ -55,8 +55,8 @@ use module::Module;
 use native::Native;
 use std::collections::HashMap;
 use std::sync::LazyLock;
-use std::time::Instant;
 use value::Value;
+use web_time::Instant;
 use zeroset_catalogue::entries::catalogue;
 
 /// Functions of this crate that stand alone.
