@@ -5,7 +5,7 @@
 //! none. [`Formula::stated`] takes somebody's word for it.
 //!
 //! ```
-//! use zeroset_field::bounds::Aabb;
+//! use zeroset_catalogue::bounds::Aabb;
 //! use zeroset_field::formula::{Budget, Builder, Formula};
 //!
 //! let formula = Builder::new();

@@ -57,7 +57,7 @@ pub struct SceneParts {
 }
 
 /// What a renderer gets: valid by construction. Its numbers are finite and in their ranges, its references lead somewhere
-/// (see [`valid`](crate::valid)).
+/// (see [`valid`]).
 #[derive(Clone, Debug)]
 pub struct Scene(SceneParts);
 

@@ -68,7 +68,7 @@ fn a_camera_that_was_moved_stays_until_the_file_moves_it() {
     // a larger ball is seen from farther away
     let far = session.current.as_ref().unwrap().scene.camera();
     assert!(far.far > moved.camera().far);
-    moved.see_as_far_as(&far);
+    moved.see_as_far_as(far);
     assert_eq!(session.rig, moved);
     let other = SCENE.replace("eye = (0, 0, 5)", "eye = (0, 0, time())");
     let at = |time| Options {

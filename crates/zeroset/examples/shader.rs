@@ -3,6 +3,7 @@
 //! `cargo run --release --example shader -- glsl`
 
 use std::error::Error;
+use std::io::Write;
 use zeroset::glam::{Vec3, vec3};
 use zeroset::scene::light::Light;
 use zeroset::scene::material::Material;
@@ -24,6 +25,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         Some("glsl") => export::glsl(&scene)?,
         _ => export::wgsl(&scene)?,
     };
-    println!("{text}");
+    std::io::stdout().write_all(text.as_bytes())?;
     Ok(())
 }
