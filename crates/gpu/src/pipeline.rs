@@ -135,6 +135,10 @@ impl Cache {
 }
 
 /// Compiles on a thread with a large stack, which is left behind if the driver does not come back.
+#[allow(
+    clippy::disallowed_methods,
+    reason = "drivers of systems, which have threads"
+)]
 fn compile_apart(
     gpu: &Arc<Gpu>,
     layouts: &Arc<Layouts>,

@@ -49,7 +49,7 @@ pub fn scramble(x: u32, y: u32, seed: u32) -> [u32; 2] {
     [v[0], v[1]]
 }
 
-/// One over the numbers that [`unit`] tells apart: as many as single precision has.
+/// One over the numbers that [`unit()`] tells apart: as many as single precision has.
 pub const UNIT: f32 = 1.0 / 16_777_216.0;
 
 /// A fraction of 2^32 as a number in [0, 1).

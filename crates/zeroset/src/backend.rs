@@ -215,7 +215,7 @@ fn standing(
 ) -> Gpu {
     let (title, failed) = (gpu.adapter().title(), Arc::new(AtomicBool::new(false)));
     let renderer: Box<dyn Renderer> = if falls_back {
-        let (console, told) = (console.clone(), Arc::clone(&failed));
+        let (console, told) = (*console, Arc::clone(&failed));
         let tell = move |error: &RenderError| {
             console.note(format_args!("{error}\nRendering on the CPU."));
             told.store(true, Ordering::Relaxed);
