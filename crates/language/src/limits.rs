@@ -1,6 +1,7 @@
 //! Limits: what a scene file may cost. Every one is checked before the allocation or the work that it guards.
 
 use crate::budget;
+use zeroset_scene::accumulator;
 use zeroset_scene::film::{self, Plane};
 
 /// What a scene may cost. A file from a stranger ends in an error within these.
@@ -214,8 +215,10 @@ impl Limits {
         copies: u64,
     ) -> Result<(), LimitError> {
         let pixels = u64::from(size[0]) * u64::from(size[1]);
-        let scratch = film::scratch(size).max(pixels.saturating_mul(copies));
-        let bytes = film::bytes(size, planes).saturating_add(scratch);
+        // while it is rendered there are sums, and once it is, the film that is made in their place
+        let sums = accumulator::bytes(size, planes).saturating_add(film::scratch(size));
+        let film = film::bytes(size, planes).saturating_add(pixels.saturating_mul(copies));
+        let bytes = sums.max(film);
         if bytes <= self.memory {
             return Ok(());
         }
