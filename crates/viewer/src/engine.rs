@@ -510,27 +510,28 @@ impl Worker<'_> {
         side: usize,
     ) -> Result<&mut Box<dyn Prepared>, RenderError> {
         let look = request.looks[side];
-        let is_it = self.ready.get(side).is_some_and(|ready| {
+        // a look whose film is kept needs none ready: there may be fewer of them than looks before this one
+        let at = side.min(self.ready.len());
+        let is_it = self.ready.get(at).is_some_and(|ready| {
             Arc::ptr_eq(&ready.scene, &request.scene) && ready.look.has_rays_of(&look)
         });
         if !is_it {
             let scene = Arc::new(request.scene_of(&look)?);
-            let prepared = match self.ready.len() > side {
-                true => {
-                    let mut ready = self.ready.remove(side);
-                    ready.prepared.update(scene)?;
-                    ready.prepared
-                }
-                false => self.renderer.prepare(scene)?,
+            let prepared = if at < self.ready.len() {
+                let mut ready = self.ready.remove(at);
+                ready.prepared.update(scene)?;
+                ready.prepared
+            } else {
+                self.renderer.prepare(scene)?
             };
             let ready = Ready {
                 scene: Arc::clone(&request.scene),
                 look,
                 prepared,
             };
-            self.ready.insert(side.min(self.ready.len()), ready);
+            self.ready.insert(at, ready);
         }
-        Ok(&mut self.ready[side].prepared)
+        Ok(&mut self.ready[at].prepared)
     }
 
     /// A film for each look: one that is there, or a new one. `wanted` is how many samples a pixel has in the end, `sums` are
