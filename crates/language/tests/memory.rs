@@ -143,6 +143,34 @@ fn kinds_of_images() {
     }
 }
 
+/// A JPEG, against what it was made from; and what is left of one is no image.
+#[test]
+fn photographs() {
+    let _alone = alone();
+    let folder = folder("show(sphere(), material(color = triplanar(\"tile.jpg\")))");
+    let at = folder.path().join("tile.jpg");
+    // smooth, so that little is lost
+    let made = image::RgbImage::from_fn(48, 40, |x, y| {
+        image::Rgb([(x * 5) as u8, (y * 6) as u8, 128])
+    });
+    made.save(&at).unwrap();
+    let loaded = good(load(&folder.path().join("main.star"), &patient()));
+    let found = images(&loaded)[0];
+    assert_eq!((found.width, found.height), (48, 40));
+    for (pixel, srgb) in found.pixels.iter().zip(made.pixels()) {
+        for (x, srgb) in pixel.to_array().into_iter().zip(srgb.0) {
+            let near = |off: f64| {
+                zeroset_scene::colour::linear_channel(f64::from(srgb) / 255.0 + off) as f32
+            };
+            assert!((near(-0.05)..near(0.05)).contains(&x), "{x} for {srgb}");
+        }
+    }
+    let bytes = std::fs::read(&at).unwrap();
+    std::fs::write(&at, &bytes[..20]).unwrap();
+    let error = error_of(folder.path(), "main.star");
+    assert!(error.contains("no image"), "{error}");
+}
+
 /// Images whose header promises more than there is, more of them than fit, and more than time allows.
 #[test]
 fn images_that_are_too_much() {
