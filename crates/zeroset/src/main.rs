@@ -1,4 +1,4 @@
-//! The command line of Zeroset: the only place that exits the process.
+//! The command line of Zeroset.
 
 mod args;
 mod backend;
