@@ -215,8 +215,8 @@ fn on_a_deep_stack<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, Failed
     if cfg!(target_family = "wasm") {
         return Ok(work());
     }
-    let broken = |message: &str| Failed {
-        report: Report::new(message).into(),
+    let failed = |report: Report| Failed {
+        report: report.into(),
         files: Vec::new(),
     };
     std::thread::scope(|scope| {
@@ -224,10 +224,8 @@ fn on_a_deep_stack<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, Failed
             .name("scene".into())
             .stack_size(starlark::depth::STACK)
             .spawn_scoped(scope, work)
-            .map_err(|e| broken(&format!("cannot start a thread: {e}")))?;
-        thread
-            .join()
-            .map_err(|_| broken("the scene loader broke down; please report this scene as a bug"))
+            .map_err(|e| failed(Report::new(format!("cannot start a thread: {e}"))))?;
+        thread.join().map_err(|_| failed(Report::of_a_bug()))
     })
 }
 

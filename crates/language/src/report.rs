@@ -50,6 +50,7 @@ pub struct Place {
 #[derive(Clone, Debug)]
 pub struct Report {
     severity: Severity,
+    bug: bool,
     message: String,
     help: Option<String>,
     source: Option<Source>,
@@ -66,6 +67,7 @@ impl Report {
     pub fn new(message: impl Into<String>) -> Report {
         Report {
             severity: Severity::Error,
+            bug: false,
             message: shortened(&message.into(), MESSAGE),
             help: None,
             source: None,
@@ -74,6 +76,19 @@ impl Report {
             position: None,
             trace: Vec::new(),
         }
+    }
+
+    /// A report of what no scene may cause: the loader itself broke down.
+    pub(crate) fn of_a_bug() -> Report {
+        Report {
+            bug: true,
+            ..Report::new("the scene loader broke down; please report this scene as a bug")
+        }
+    }
+
+    /// Whether the loader itself broke down, whatever the scene is. A message cannot tell: it may quote the scene.
+    pub fn is_bug(&self) -> bool {
+        self.bug
     }
 
     /// With a hint what to do.

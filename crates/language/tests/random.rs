@@ -125,8 +125,10 @@ fn survives(text: &str, language: Language) -> Result<(), TestCaseError> {
             prop_assert_eq!(json, to_text(&expand(&again.scene).unwrap()));
         }
         Err(failed) => {
+            prop_assert!(!failed.report.is_bug(), "{}", text);
+            // no text of a report may break what shows it
             let shown = format!("{:?}", miette::Report::new(*failed.report));
-            prop_assert!(!shown.contains("broke down"), "{}", text);
+            prop_assert!(!shown.is_empty());
         }
     }
     Ok(())

@@ -7,7 +7,7 @@ choice! {
     /// One plane of the film, and its view.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
     pub enum Plane("view", "a view", "Views") {
-        /// What a camera would see: linear colour, 3 channels.
+        /// What a camera would see: linear colour.
         Colour("colour", "Picture", "3 channels"),
         /// Share of the pixel that is covered by a surface.
         Coverage("coverage", "Coverage", "1 channel"),
