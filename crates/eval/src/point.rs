@@ -30,7 +30,9 @@ macro_rules! numbers {
         }
     )*};
 }
-numbers!(f32, F64, Interval, Dual<f32>, Dual<F64>, Dual<Interval>);
+numbers!(F64, Interval, Dual<F64>, Dual<Interval>);
+#[cfg(feature = "single")]
+numbers!(f32, Dual<f32>);
 
 /// Evaluates a tape at one point (or box) at a time.
 pub struct Point<'t, R> {

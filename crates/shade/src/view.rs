@@ -100,6 +100,39 @@ impl View {
         }
     }
 
+    /// No picture: rays of one's own. What they stand for is `width` wide anywhere, they go as far as `far` from places within `size` of
+    /// the origin.
+    pub fn of_rays(width: f32, size: f32, far: f32) -> View {
+        let pixel = Linear {
+            slope: 0.0,
+            constant: width,
+        };
+        let rounding = Linear {
+            slope: ROUNDING,
+            constant: (ROUNDING * size).max(f32::MIN_POSITIVE),
+        };
+        let footprint = 0.5;
+        View {
+            pinhole: false,
+            eye: [0.0; 3],
+            right: [1.0, 0.0, 0.0],
+            up: [0.0, 1.0, 0.0],
+            back: [0.0, 0.0, 1.0],
+            scale: width,
+            half: [0.0; 2],
+            near: 0.0,
+            far,
+            pixel,
+            rounding,
+            threshold: Linear {
+                slope: rounding.slope,
+                constant: footprint * width + rounding.constant,
+            },
+            footprint,
+            fine: 1.0,
+        }
+    }
+
     /// How much narrower the footprint of a pixel is along `ray` (what [`View::ray`] gave) than in the middle of the
     /// picture, for the same distance: pixels have equal sides on a plane, which a ray at the angle a meets cos a later and
     /// aslant.

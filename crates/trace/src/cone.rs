@@ -4,14 +4,16 @@
 //! `(f - w) / (1 + k)` is a distance along the axis: it changes by at most 1 per unit, as the field does along a ray. So
 //! cones are marched like rays, by the same marchers.
 
-use crate::march::{Arrived, ORDINAL, Sink, Source, Stream, stream};
+use crate::march::{Arrived, ORDINAL, Sink, Stream, stream};
 use crate::marcher::{Auto, Marcher, Sphere};
 use crate::order;
+use crate::primary;
+use crate::ray::{Common, Queue};
 use crate::simd::{Chosen, INSIDE, load, splat, store};
 use crate::tile::{Area, HEIGHT, Rays, Scratch, Solid, Spans, WIDTH};
 use fearless_simd::{Simd, prelude::*};
 use zeroset_number::lanes::LaneMask;
-use zeroset_number::{Lanes, Ops, Real, Vec3};
+use zeroset_number::{Lanes, Ops, Real};
 use zeroset_scene::settings::March;
 use zeroset_shade::march::{CONE_NEAR, CONE_STEPS};
 use zeroset_shade::view::Linear;
@@ -57,10 +59,18 @@ pub(crate) fn prepass<S: Simd>(
             Some(_) => run(s, Sphere, &cells, width, count, q),
             None => {}
         }
-        std::mem::swap(&mut q.spans, &mut q.parents);
+        std::mem::swap(&mut q.queue.spans, &mut q.parents);
         above = side;
     }
     expand(s, above, WIDTH * HEIGHT, q);
+    if area.width < WIDTH || area.height < HEIGHT {
+        // what a tile has beyond the edge of the picture is not followed
+        let beyond =
+            |i: &usize| order::X[*i] >= area.width as f32 || order::Y[*i] >= area.height as f32;
+        for i in (0..WIDTH * HEIGHT).filter(beyond) {
+            q.queue.spans.start[i] = f32::INFINITY;
+        }
+    }
 }
 
 /// The whole tile is made of cells of this side.
@@ -69,7 +79,7 @@ const TILE_TOP: usize = WIDTH / TOP * (HEIGHT / TOP);
 
 /// Gives every cell what its parent has. A parent has `ratio * ratio` cells.
 fn expand<S: Simd>(s: S, ratio: usize, count: usize, q: &mut Scratch) {
-    let (from, to) = (&q.parents, &mut q.spans);
+    let (from, to) = (&q.parents, &mut q.queue.spans);
     let pairs = [
         (&from.start, &mut to.start),
         (&from.end, &mut to.end),
@@ -123,23 +133,17 @@ impl Cells<'_> {
             load(s, &order::Y, i) * side + (self.area.y as f32 + half),
         )
     }
-}
 
-impl<S: Simd> Source<S> for Cells<'_> {
+    /// Which of the cells from number `i` on have pixels of the picture.
     #[inline(always)]
-    fn ray(&self, s: S, i: usize) -> Vec3<Lanes<S>> {
-        let (x, y) = self.middle(s, i);
-        self.solid.view.ray(x, y)
-    }
-    #[inline(always)]
-    fn exists(&self, s: S, i: usize) -> LaneMask<S> {
+    fn exist<S: Simd>(&self, s: S, i: usize) -> LaneMask<S> {
         let side = self.side as f32;
         (load(s, &order::X, i) * side).below(self.area.width as f32)
             & (load(s, &order::Y, i) * side).below(self.area.height as f32)
     }
 }
 
-/// Cuts the spans of cells to where their cones can meet the scene's box. Returns the width of the widest cone.
+/// Puts the cones of the cells into the queue, their spans cut to where they can meet the scene's box. Returns the width of the widest.
 #[inline(always)]
 fn enclose<S: Simd>(s: S, cells: &Cells<'_>, count: usize, q: &mut Scratch) -> Linear {
     let (view, region) = (cells.solid.view, &cells.solid.region);
@@ -150,37 +154,49 @@ fn enclose<S: Simd>(s: S, cells: &Cells<'_>, count: usize, q: &mut Scratch) -> L
                 slope: 0.0,
                 constant: 0.0,
             };
+            let Queue {
+                rays,
+                spans,
+                common,
+                ..
+            } = &mut q.queue;
+            *common = primary::common(view, Some(1.0));
             for i in (0..count).step_by(S::f32s::LEN) {
                 let (x, y) = cells.middle(s, i);
                 let (slope, constant) = view.cone(x, y, cells.reach);
                 widest.slope = widest.slope.max(slope.0.reduce_max());
                 widest.constant = constant;
-                let (o, d) = view.split(view.ray(x, y));
+                let ray = primary::ray(view, x, y);
+                rays.store(common, &ray, i);
+                let (o, d) = (ray.origin, ray.direction);
                 let (slope, constant) = (
                     slope + view.threshold.slope,
                     splat(s, constant + view.threshold.constant),
                 );
-                let above = load(s, &q.spans.start, i);
+                let above = load(s, &spans.start, i);
                 let start = region
                     .enter(o, d, slope, constant)
                     .max(view.near)
                     .max(above);
                 // what is known to be empty around the start of the larger cell is less around a later one
-                let radius = load(s, &q.spans.radius, i);
+                let radius = load(s, &spans.radius, i);
                 let left = (radius.abs() - (start - above)).max(0.0);
                 let left = Lanes::select(radius.below(0.0) & left.above(0.0), -left, left);
-                store(left, &mut q.spans.radius, i);
-                let end =
-                    region
-                        .leave(o, d, slope, constant)
-                        .min(view.far)
-                        .min(load(s, &q.spans.end, i));
+                store(left, &mut spans.radius, i);
+                let end = region
+                    .leave(o, d, slope, constant)
+                    .min(view.far)
+                    .min(load(s, &spans.end, i));
                 store(
-                    Lanes::select(start.below(end), start, splat(s, f32::INFINITY)),
-                    &mut q.spans.start,
+                    Lanes::select(
+                        start.below(end) & cells.exist(s, i),
+                        start,
+                        splat(s, f32::INFINITY),
+                    ),
+                    &mut spans.start,
                     i,
                 );
-                store(end, &mut q.spans.end, i);
+                store(end, &mut spans.end, i);
             }
             widest
         },
@@ -204,26 +220,17 @@ fn run<S: Simd, M: Marcher>(
             slope: width.slope * share * CONE_NEAR,
             constant: width.constant * share * CONE_NEAR,
         },
-        narrows: false,
         least: LEAST,
         touch: true,
         max_steps: CONE_STEPS,
     };
     q.next.start[..count].fill(f32::INFINITY);
-    q.next.end[..count].copy_from_slice(&q.spans.end[..count]);
+    q.next.end[..count].copy_from_slice(&q.queue.spans.end[..count]);
+    q.queue.count = count;
     let mut found = Found { spans: &mut q.next };
-    q.counts.prepass += stream(
-        s,
-        marcher,
-        &how,
-        cells,
-        &q.spans,
-        count,
-        &mut q.rays,
-        &mut q.work,
-        &mut found,
-    );
-    std::mem::swap(&mut q.spans, &mut q.next);
+    let (queue, rays, work) = (&q.queue, &mut q.rays, &mut q.work);
+    q.counts.prepass += stream(s, marcher, &how, queue, rays, work, &mut found);
+    std::mem::swap(&mut q.queue.spans, &mut q.next);
 }
 
 /// Where cones ended.
@@ -233,7 +240,7 @@ struct Found<'a> {
 
 impl<S: Simd> Sink<S> for Found<'_> {
     #[inline(always)]
-    fn found(&mut self, done: Chosen<S>, at: &Arrived<S>) {
+    fn found(&mut self, done: Chosen<S>, _common: &Common, at: &Arrived<S>) {
         // all cones and rays within this one keep this far from the surface; a cone that met it at once began too near to tell
         let free = at.clearance.max(0.0) * FREE;
         let mut bits = done.bits();
@@ -255,7 +262,7 @@ impl<S: Simd> Sink<S> for Found<'_> {
     }
     #[inline(always)]
     fn left(&mut self, _gone: LaneMask<S>, _at: &Arrived<S>) {}
-    fn spent(&mut self, rays: &Rays, i: usize) {
+    fn spent(&mut self, rays: &Rays, _common: &Common, i: usize) {
         let cell = (rays.word[i] & ORDINAL) as usize;
         (
             self.spans.start[cell],

@@ -1,35 +1,31 @@
 //! What is done for a tile: the stages, sample by sample.
 
+use crate::closest::{Plan, Rooms, closest};
+use crate::integrator::{Direct, Integrator, Sample};
 use crate::march::ORDINAL;
 use crate::normal::{normals, place};
 use crate::order::{self, PLACE};
-use crate::primary::{Plan, march};
 use crate::renderer::{Done, PreparedScene};
-use crate::shadow::shadows;
-use crate::simd::{INSIDE, constant, load, load3, splat, store, store3};
+use crate::simd::{splat, store, store3};
 use crate::stop::Stop;
-use crate::tile::{Area, HEIGHT, Hits, Scratch, Solid, WIDTH};
-use crate::{ao, cone, resolve};
+use crate::surface::marks;
+use crate::tile::{Area, HEIGHT, Scratch, Solid, WIDTH};
+use crate::{cone, primary, resolve};
 use fearless_simd::{Simd, prelude::*};
 use std::ops::Range;
-use zeroset_eval::BATCH;
-use zeroset_number::{Lanes, Ops, Real};
+use zeroset_number::Lanes;
 use zeroset_scene::accumulator::{Accumulator, Sum};
 use zeroset_scene::camera::Camera;
 use zeroset_scene::film::Plane;
 use zeroset_scene::material::Material;
-use zeroset_scene::settings::{Filter, Occlusion, Shading};
-use zeroset_shade::light::{arrival, towards};
-use zeroset_shade::march::MARKS_BEHIND;
-use zeroset_shade::pattern::{Place, colour as pattern_colour};
-use zeroset_shade::sampling::{hit_seed, point, scramble};
-use zeroset_shade::sky::{SkyColours, colour as sky};
-use zeroset_shade::surface::{Lighting, LocalMaterial, colour};
+use zeroset_scene::settings::Filter;
+use zeroset_shade::sampling::{point, scramble};
+use zeroset_shade::sky::{SkyColours, colour};
 use zeroset_shade::view::View;
 
 /// All that tiles of one rendering have in common.
 pub(crate) struct Job<'a> {
-    picture: &'a PreparedScene,
+    pub(crate) picture: &'a PreparedScene,
     view: View,
     wanted: [bool; Plane::ALL.len()],
     /// Samples a pixel of the finished picture, and their filter.
@@ -40,7 +36,7 @@ pub(crate) struct Job<'a> {
     /// Whether the marks of hits differ and are needed.
     marks: bool,
     /// What a surface without a material is made of.
-    fallback: Material,
+    pub(crate) fallback: Material,
 }
 
 impl<'a> Job<'a> {
@@ -78,7 +74,7 @@ impl<'a> Job<'a> {
     }
 
     /// Samples a pixel of the finished picture.
-    fn samples(&self) -> u32 {
+    pub(crate) fn samples(&self) -> u32 {
         self.samples.map_or(1, |(n, _)| n)
     }
 
@@ -87,7 +83,7 @@ impl<'a> Job<'a> {
         self.taken.len() as u32
     }
 
-    fn wants(&self, plane: Plane) -> bool {
+    pub(crate) fn wants(&self, plane: Plane) -> bool {
         self.wanted[plane as usize]
     }
 
@@ -157,7 +153,7 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Finds what the rays hit and what colour it has.
+    /// Finds what the rays hit and the light that comes from there.
     fn trace<S: Simd>(&self, s: S, solid: &Solid<'_>, area: &Area, index: u32, q: &mut Scratch) {
         let settings = self.picture.scene.settings();
         if index == self.taken.start {
@@ -174,7 +170,28 @@ impl<'a> Job<'a> {
         if self.plan.steps {
             q.steps.fill(0.0);
         }
-        march(s, &self.plan, solid, area, q);
+        primary::aim(s, solid.view, area, &q.jitter, &mut q.queue);
+        let rooms = Rooms {
+            hits: &mut q.hits,
+            rays: &mut q.rays,
+            work: &mut q.work,
+            steps: &mut q.steps,
+            exhausted: &mut q.exhausted,
+        };
+        q.counts.march += closest(s, &self.plan, solid, &q.queue, rooms);
+        self.surfaces(s, solid, q);
+        let sample = Sample {
+            job: self,
+            solid,
+            area,
+            index,
+        };
+        Direct.integrate(s, &sample, q);
+    }
+
+    /// Finds what is known of the hits at hand without any light: places, normals, objects and materials.
+    fn surfaces<S: Simd>(&self, s: S, solid: &Solid<'_>, q: &mut Scratch) {
+        let settings = self.picture.scene.settings();
         place(
             s,
             solid,
@@ -185,266 +202,16 @@ impl<'a> Job<'a> {
         normals(s, solid, settings.normals, q);
         if self.marks {
             marks(s, solid, q);
-        } else {
-            let (object, material) = (
-                self.picture.object.unwrap_or(0),
-                self.picture.material.unwrap_or(0),
-            );
-            let n = q.hits.count;
-            q.hits.object[..n].fill(f32::from(object));
-            q.hits.first[..n].fill(f32::from(material));
-            q.hits.share[..n].fill(0.0);
+            return;
         }
-        self.occlude(s, solid, area, index, q);
-        self.light(s, solid, q);
-        self.shade(s, q);
-    }
-
-    /// Finds the ambient visibility, object by object where they chose different methods.
-    fn occlude<S: Simd>(&self, s: S, solid: &Solid<'_>, area: &Area, index: u32, q: &mut Scratch) {
-        let methods = &self.picture.methods;
-        let random = |m: &Occlusion| {
-            matches!(
-                m,
-                Occlusion::Hemisphere { .. } | Occlusion::Obscurance { .. }
-            )
-        };
-        if methods.len() > 1 {
-            q.hits.sort_by_method(&self.picture.method_of);
-        }
-        if methods.iter().any(random) {
-            let seed = self.picture.scene.settings().seed;
-            for i in 0..q.hits.count {
-                let pixel = (q.hits.word[i] & ORDINAL) as usize;
-                let (x, y) = (
-                    area.x as u32 + order::X[pixel] as u32,
-                    area.y as u32 + order::Y[pixel] as u32,
-                );
-                // not the random numbers of the pixel's samples
-                let key = scramble(x, y, hit_seed(seed, index));
-                (q.scramble[0][i], q.scramble[1][i]) = (key[0], key[1]);
-            }
-        }
-        let mut from = 0;
-        for (number, method) in methods.iter().enumerate() {
-            let to = if methods.len() == 1 {
-                q.hits.count
-            } else {
-                let of = |object: &f32| method_of(&self.picture.method_of, *object);
-                from + q.hits.object[from..q.hits.count]
-                    .iter()
-                    .take_while(|o| of(o) == number)
-                    .count()
-            };
-            ao::occlusion(s, solid, *method, from..to, q);
-            from = to;
-        }
-        if !solid.close {
-            // what was read is no bound: nothing is known to be empty
-            let count = q.hits.count;
-            q.hits.ball[..count].fill(0.0);
-        }
-        // inside a solid there is no sky: it is shown as if there were no solid
-        let hits = &mut q.hits;
-        for i in (0..hits.count).filter(|&i| hits.word[i] & INSIDE != 0) {
-            hits.open[i] = 1.0;
-            for (bent, normal) in hits.bent.iter_mut().zip(&hits.normal) {
-                bent[i] = normal[i];
-            }
-        }
-    }
-
-    /// Sums up what arrives from the lights.
-    fn light<S: Simd>(&self, s: S, solid: &Solid<'_>, q: &mut Scratch) {
-        let (count, shading) = (q.hits.count, self.picture.scene.settings().shading);
-        let columns = q.hits.diffuse.iter_mut().chain(&mut q.hits.gloss);
-        columns
-            .chain([&mut q.hits.shadow, &mut q.hits.shares])
-            .for_each(|c| c[..count].fill(0.0));
-        for light in self.picture.scene.lights() {
-            if solid.stop.is_set() {
-                break;
-            }
-            shadows(s, solid, light, q);
-            let only = self
-                .picture
-                .material
-                .map(|m| self.material(f32::from(m)).shininess);
-            s.vectorize(
-                #[inline(always)]
-                || {
-                    let hits = &mut q.hits;
-                    for i in (0..count).step_by(S::f32s::LEN) {
-                        let lit = load(s, &hits.lit, i);
-                        let (_, d) = self.view.split(load3(s, &hits.ray, i));
-                        let to = towards(&light.source, load3(s, &hits.point, i));
-                        let shininess = match (shading, only) {
-                            (Shading::Phong, None) => self.shininess(s, hits, i),
-                            (_, shininess) => splat(s, shininess.unwrap_or(1.0)),
-                        };
-                        let got = arrival(
-                            shading,
-                            light,
-                            to,
-                            load3(s, &hits.normal, i),
-                            d,
-                            lit,
-                            shininess,
-                        );
-                        let (diffuse, gloss) =
-                            (load3(s, &hits.diffuse, i), load3(s, &hits.gloss, i));
-                        store3(diffuse + got.diffuse, &mut hits.diffuse, i);
-                        store3(gloss + got.gloss, &mut hits.gloss, i);
-                        if self.wants(Plane::Shadow) {
-                            store(
-                                load(s, &hits.shadow, i) + got.share * lit,
-                                &mut hits.shadow,
-                                i,
-                            );
-                            store(load(s, &hits.shares, i) + got.share, &mut hits.shares, i);
-                        }
-                    }
-                },
-            );
-        }
-    }
-
-    fn material(&self, number: f32) -> &Material {
-        let at = if number >= 0.0 {
-            number as usize
-        } else {
-            usize::MAX
-        };
-        self.picture
-            .scene
-            .materials()
-            .get(at)
-            .unwrap_or(&self.fallback)
-    }
-
-    #[inline(always)]
-    fn shininess<S: Simd>(&self, s: S, hits: &Hits, i: usize) -> Lanes<S> {
-        Lanes(S::f32s::from_fn(
-            s,
-            #[inline(always)]
-            |k| {
-                let (a, b) = (hits.first[i + k], hits.second[i + k]);
-                let (a, share) = (self.material(a).shininess, hits.share[i + k]);
-                if share > 0.0 {
-                    a + (self.material(b).shininess - a) * share
-                } else {
-                    a
-                }
-            },
-        ))
-    }
-
-    /// What the surface is made of at the hits from `i` on: of each material that any of them has, as much as they have.
-    #[inline(always)]
-    fn local_material<S: Simd>(
-        &self,
-        s: S,
-        hits: &Hits,
-        i: usize,
-        at: &Place<Lanes<S>>,
-    ) -> LocalMaterial<Lanes<S>> {
-        if let Some(only) = self.picture.material {
-            return whole(self.material(f32::from(only)), at, splat(s, 1.0));
-        }
-        let lanes = S::f32s::LEN.min(hits.count - i);
-        let (first, second, share) = (
-            load(s, &hits.first, i),
-            load(s, &hits.second, i),
-            load(s, &hits.share, i),
+        let (object, material) = (
+            self.picture.object.unwrap_or(0),
+            self.picture.material.unwrap_or(0),
         );
-        let mut sum: Option<LocalMaterial<Lanes<S>>> = None;
-        let mut last = f32::NEG_INFINITY;
-        loop {
-            // the next material in the order of their numbers
-            let mut number = f32::INFINITY;
-            for k in 0..lanes {
-                let (a, b, share) = (hits.first[i + k], hits.second[i + k], hits.share[i + k]);
-                if a > last && a < number {
-                    number = a;
-                }
-                if share > 0.0 && b > last && b < number {
-                    number = b;
-                }
-            }
-            if number == f32::INFINITY {
-                break;
-            }
-            last = number;
-            let (not_first, not_second) = (
-                first.below(number) | first.above(number),
-                second.below(number) | second.above(number),
-            );
-            let zero = splat(s, 0.0);
-            let weight = Lanes::select(not_first, zero, share.one_minus())
-                + Lanes::select(not_second, zero, share);
-            let part = whole(self.material(number), at, weight);
-            sum = Some(match sum {
-                None => part,
-                Some(all) => LocalMaterial {
-                    albedo: all.albedo + part.albedo,
-                    emission: all.emission + part.emission,
-                    specular: all.specular + part.specular,
-                    metallic: all.metallic + part.metallic,
-                    roughness: all.roughness + part.roughness,
-                },
-            });
-        }
-        match sum {
-            Some(all) => all,
-            None => whole(&self.fallback, at, splat(s, 1.0)),
-        }
-    }
-
-    /// Puts the colours of all hits together.
-    fn shade<S: Simd>(&self, s: S, q: &mut Scratch) {
-        s.vectorize(
-            #[inline(always)]
-            || {
-                let (scene, hits) = (&self.picture.scene, &mut q.hits);
-                let heaven = SkyColours::of(scene.sky());
-                // with more rays a pixel each stands for less of it
-                let finer = 1.0 / (self.samples() as f32).sqrt();
-                for i in (0..hits.count).step_by(S::f32s::LEN) {
-                    let (_, d) = self.view.split(load3(s, &hits.ray, i));
-                    let n = load3(s, &hits.normal, i);
-                    let narrow = self.view.narrow(load3(s, &hits.ray, i));
-                    let pixel = self.view.width(load(s, &hits.t, i), narrow) * finer;
-                    let mut place = Place::new(load3(s, &hits.point, i), n, d, pixel);
-                    if self.picture.has_orbits {
-                        let o = &hits.orbit;
-                        place = place.with_orbit([
-                            load(s, &o[0], i),
-                            load(s, &o[1], i),
-                            load(s, &o[2], i),
-                            load(s, &o[3], i),
-                        ]);
-                    }
-                    let what = self.local_material(s, hits, i, &place);
-                    let light = Lighting {
-                        diffuse: load3(s, &hits.diffuse, i),
-                        gloss: load3(s, &hits.gloss, i),
-                        open: load(s, &hits.open, i),
-                        bent: load3(s, &hits.bent, i),
-                        normal: n,
-                        direction: d,
-                    };
-                    let c = colour(scene.settings().shading, &heaven, &what, &light);
-                    store3(c, &mut hits.colour, i);
-                    if self.wants(Plane::Albedo) {
-                        store3(what.albedo, &mut hits.albedo, i);
-                    }
-                    if self.wants(Plane::Shadow) {
-                        let (lit, all) = (load(s, &hits.shadow, i), load(s, &hits.shares, i));
-                        store(lit / all.max(1e-20), &mut hits.shadow, i);
-                    }
-                }
-            },
-        );
+        let n = q.hits.count;
+        q.hits.object[..n].fill(f32::from(object));
+        q.hits.first[..n].fill(f32::from(material));
+        q.hits.share[..n].fill(0.0);
     }
 
     /// Puts the hits of one sample in their pixels, and the sky in all others.
@@ -470,7 +237,7 @@ impl<'a> Job<'a> {
 
     /// Fills the tile with the sky. (Its colours are so smooth that the middle of a pixel does for all its samples.)
     fn background<S: Simd>(&self, s: S, area: &Area, q: &mut Scratch) {
-        let heaven = SkyColours::of(self.picture.scene.sky());
+        let sky = SkyColours::of(self.picture.scene.sky());
         s.vectorize(
             #[inline(always)]
             || {
@@ -482,10 +249,9 @@ impl<'a> Job<'a> {
                 for y in 0..area.height {
                     let v = splat(s, (area.y + y) as f32 + 0.5);
                     for x in (0..area.width).step_by(S::f32s::LEN) {
-                        let (_, d) = self
-                            .view
-                            .split(self.view.ray(ramp + ((area.x + x) as f32 + 0.5), v));
-                        store3(sky(&heaven, d.y), &mut q.planes.colour, y * WIDTH + x);
+                        let ray = primary::ray(&self.view, ramp + ((area.x + x) as f32 + 0.5), v);
+                        let sky = colour(&sky, ray.direction.y);
+                        store3(sky, &mut q.planes.colour, y * WIDTH + x);
                         store(splat(s, 0.0), &mut q.planes.coverage, y * WIDTH + x);
                     }
                 }
@@ -515,93 +281,6 @@ impl<'a> Job<'a> {
                 let out = &mut numbers[at * channels..(at + area.width) * channels];
                 q.planes.add_to(*sum, y * WIDTH, &nearer, out);
             }
-        }
-    }
-}
-
-/// A share of one material.
-#[inline(always)]
-fn whole<S: Simd>(m: &Material, at: &Place<Lanes<S>>, weight: Lanes<S>) -> LocalMaterial<Lanes<S>> {
-    LocalMaterial {
-        albedo: pattern_colour(&m.pattern, at) * weight,
-        emission: constant(weight, m.emission.to_array()) * weight,
-        specular: weight * m.specular,
-        metallic: weight * m.metallic,
-        roughness: weight * m.roughness,
-    }
-}
-
-fn method_of(methods: &[usize], object: f32) -> usize {
-    if object >= 0.0 {
-        methods.get(object as usize).copied().unwrap_or(0)
-    } else {
-        0
-    }
-}
-
-impl Hits {
-    /// Orders the hits by the occlusion method of their objects.
-    fn sort_by_method(&mut self, methods: &[usize]) {
-        let n = self.count;
-        let mut order: Vec<usize> = (0..n).collect();
-        order.sort_by_key(|&i| method_of(methods, self.object[i]));
-        let mut old = vec![0.0; n];
-        let columns = [
-            &mut self.t,
-            &mut self.f,
-            &mut self.steps,
-            &mut self.residual,
-            &mut self.offset,
-        ];
-        let marks = [
-            &mut self.object,
-            &mut self.first,
-            &mut self.second,
-            &mut self.share,
-        ];
-        let vectors = self
-            .ray
-            .iter_mut()
-            .chain(&mut self.orbit)
-            .chain(&mut self.point)
-            .chain(&mut self.normal);
-        for column in columns.into_iter().chain(marks).chain(vectors) {
-            old.copy_from_slice(&column[..n]);
-            for (to, &from) in column.iter_mut().zip(&order) {
-                *to = old[from];
-            }
-        }
-        let old = self.word[..n].to_vec();
-        for (to, &from) in self.word.iter_mut().zip(&order) {
-            *to = old[from];
-        }
-    }
-}
-
-/// Finds which objects and materials the hits belong to.
-fn marks<S: Simd>(s: S, solid: &Solid<'_>, q: &mut Scratch) {
-    for k in (0..q.hits.count).step_by(BATCH) {
-        let n = (q.hits.count - k).min(BATCH);
-        if solid.stop.before(n) {
-            break;
-        }
-        let hits = &q.hits;
-        let places = hits.point.iter().zip(&hits.normal);
-        for (column, (x, normal)) in q.work.points_mut().iter_mut().zip(places) {
-            for i in 0..n {
-                let behind = MARKS_BEHIND * solid.view.rounding.at(hits.t[k + i]);
-                column.0[i] = x[k + i] - normal[k + i] * behind;
-            }
-        }
-        zeroset_eval::marks(s, solid.program.marks(), &mut q.work, n);
-        q.counts.material += n as u64;
-        let marks = q.work.marks();
-        q.hits.object[k..k + n].copy_from_slice(&marks.object.0[..n]);
-        q.hits.first[k..k + n].copy_from_slice(&marks.first.0[..n]);
-        q.hits.second[k..k + n].copy_from_slice(&marks.second.0[..n]);
-        q.hits.share[k..k + n].copy_from_slice(&marks.share.0[..n]);
-        for (column, orbit) in q.hits.orbit.iter_mut().zip(&marks.orbit) {
-            column[k..k + n].copy_from_slice(&orbit.0[..n]);
         }
     }
 }

@@ -28,10 +28,11 @@
 #![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
 mod ao;
-mod beam;
 pub mod bench;
 mod bracket;
+mod closest;
 mod cone;
+mod integrator;
 mod isolate;
 mod job;
 mod march;
@@ -40,11 +41,16 @@ mod normal;
 mod order;
 mod planes;
 mod primary;
+mod query;
+mod ray;
 mod renderer;
 mod resolve;
+mod secondary;
 mod shadow;
 mod simd;
 mod stop;
+mod surface;
 mod tile;
 
+pub use query::{Hit, QueryError, Ray};
 pub use renderer::{CpuRenderer, Part, PreparedScene, sums};

@@ -1,15 +1,17 @@
-//! The stream of rays from the eye (and of the cones that go before them): a batch that is refilled as rays end.
+//! The stream of rays (and of the cones that go before those from the eye): a batch that is refilled as rays end.
 //!
 //! A batch holds up to [`BATCH`] rays. After every sample the rays that ended are taken out, the gap is closed, and new rays
 //! fill the end: batches stay full, and their state stays in the nearest cache. What a ray does depends on nothing but
 //! itself, so the picture does not depend on which rays share a batch.
 //!
-//! The word of a ray holds its pixel (12 bits), the iteration in which it began (19 bits, wrapping) and the side that it is
-//! marched on ([`INSIDE`]). Rays are in the order in which they began, so the first ones run out of steps first.
+//! The word of a ray holds its number in the queue (12 bits), the iteration in which it began (19 bits,
+//! wrapping) and the side that it is marched on ([`INSIDE`]). Rays are in the order in which they began, so the first ones run out
+//! of steps first.
 
 use crate::marcher::{self, Marcher, Reach, Step};
+use crate::ray::{Common, Queue, Ray};
 use crate::simd::{Chosen, INSIDE, along, first_lanes, load, load_words, load3, sided, store3};
-use crate::tile::{Rays, Solid, Spans};
+use crate::tile::{Rays, Solid};
 use fearless_simd::{Simd, prelude::*};
 use std::ops::Range;
 use zeroset_eval::{BATCH, Workspace};
@@ -18,9 +20,9 @@ use zeroset_number::{Lanes, Ops, Real, Vec3};
 use zeroset_shade::march::{LEAST_ROUNDINGS, behind};
 use zeroset_shade::view::Linear;
 
-/// Where the pixel (or hit) of a word ends and the iteration begins.
+/// Where the number in the queue (or of the hit) of a word ends and the iteration begins.
 pub(crate) const ORDINAL_BITS: u32 = 12;
-/// The pixel (or hit) of a word.
+/// The number in the queue (or of the hit) of a word.
 pub(crate) const ORDINAL: u32 = (1 << ORDINAL_BITS) - 1;
 /// Iterations are counted modulo this plus one.
 pub(crate) const ITERATIONS: u32 = (1 << (31 - ORDINAL_BITS)) - 1;
@@ -31,17 +33,9 @@ pub(crate) fn age(word: u32, iteration: u32) -> u32 {
     iteration.wrapping_sub(word >> ORDINAL_BITS) & ITERATIONS
 }
 
-/// Where the rays of a stream come from.
-pub(crate) trait Source<S: Simd> {
-    /// What differs from ray to ray (see [`zeroset_shade::view::View::ray`]), for those from number `i` on.
-    fn ray(&self, s: S, i: usize) -> Vec3<Lanes<S>>;
-    /// Which of the rays from number `i` on there are.
-    fn exists(&self, s: S, i: usize) -> LaneMask<S>;
-}
-
 /// Rays that ended.
 pub(crate) struct Arrived<S: Simd> {
-    pub(crate) ray: Vec3<Lanes<S>>,
+    pub(crate) ray: Ray<Lanes<S>>,
     /// The last place that is not behind the surface.
     pub(crate) t: Lanes<S>,
     /// How much farther the place behind the surface is; zero where the ray ended before it.
@@ -67,12 +61,19 @@ impl<S: Simd> Arrived<S> {
 
 /// Where the rays of a stream go.
 pub(crate) trait Sink<S: Simd> {
+    /// Whether rays may go on behind the surface that they met, on its other side.
+    const CROSSES: bool = false;
     /// These met the surface.
-    fn found(&mut self, done: Chosen<S>, at: &Arrived<S>);
+    fn found(&mut self, done: Chosen<S>, common: &Common, at: &Arrived<S>);
+    /// Which of those that crossed the surface go on, where rays may.
+    #[inline(always)]
+    fn goes_on(&mut self, crossed: LaneMask<S>, _at: &Arrived<S>) -> LaneMask<S> {
+        crossed
+    }
     /// These left.
     fn left(&mut self, gone: LaneMask<S>, at: &Arrived<S>);
-    /// Ray number `i` ran out of steps.
-    fn spent(&mut self, rays: &Rays, i: usize);
+    /// Ray number `i` of the batch ran out of steps.
+    fn spent(&mut self, rays: &Rays, common: &Common, i: usize);
 }
 
 /// What is marched, and as what.
@@ -84,8 +85,6 @@ pub(crate) struct Stream<'a> {
     pub(crate) share: f32,
     /// Radius of the footprint, but for what rounding adds.
     pub(crate) near: Linear,
-    /// Whether the footprint of a ray is narrower away from the middle of the picture.
-    pub(crate) narrows: bool,
     /// Share of the footprint that a step is at least long.
     pub(crate) least: f32,
     /// Whether a clearance below the footprint is a hit, and not just one below zero.
@@ -99,17 +98,13 @@ impl Stream<'_> {
     #[inline(always)]
     pub(crate) fn reach<S: Simd>(
         &self,
-        ray: Vec3<Lanes<S>>,
+        ray: &Ray<Lanes<S>>,
         t: Lanes<S>,
         p: Vec3<Lanes<S>>,
     ) -> Reach<Lanes<S>> {
-        let view = self.solid.view;
-        let near = self.near.at(if self.narrows {
-            t * view.narrow(ray)
-        } else {
-            t
-        });
-        let rounding = view.rounding.at(t);
+        let way = ray.way(t);
+        let near = self.near.at(way * ray.narrow);
+        let rounding = self.solid.view.rounding.at(way);
         let size = p.x.abs() + p.y.abs() + p.z.abs();
         Reach {
             near: near + rounding,
@@ -120,18 +115,12 @@ impl Stream<'_> {
     }
 }
 
-/// Marches rays or cones number 0 to `count` as far as they have a span. Returns the evaluations.
-#[expect(
-    clippy::too_many_arguments,
-    reason = "separate parts of the scratch memory"
-)]
+/// Marches the rays or cones of the queue as far as they have a span. Returns the evaluations.
 pub(crate) fn stream<S: Simd, M: Marcher>(
     s: S,
     marcher: M,
     how: &Stream<'_>,
-    source: &impl Source<S>,
-    spans: &Spans,
-    count: usize,
+    queue: &Queue,
     rays: &mut Rays,
     work: &mut Workspace,
     sink: &mut impl Sink<S>,
@@ -140,20 +129,21 @@ pub(crate) fn stream<S: Simd, M: Marcher>(
         #[inline(always)]
         || {
             rays.count = 0;
+            let (common, count) = (queue.common, queue.count);
             let (mut next, mut iteration, mut evaluations) = (0, 0, 0);
             loop {
                 while next < count && rays.count + S::f32s::LEN <= BATCH {
-                    begin(s, marcher, source, spans, next..count, iteration, rays);
+                    begin(s, marcher, queue, next..count, iteration, rays);
                     next += S::f32s::LEN;
                 }
                 if rays.count == 0 || how.solid.stop.before(rays.count) {
                     break;
                 }
-                sample(s, how.solid, rays, work);
+                sample(s, how.solid, &common, rays, work);
                 evaluations += rays.count as u64;
-                advance(s, marcher, how, iteration, rays, work, sink);
+                advance(s, marcher, how, &common, iteration, rays, work, sink);
                 iteration += 1;
-                retire(how.max_steps, iteration, rays, sink);
+                retire(how.max_steps, iteration, &common, rays, sink);
             }
             evaluations
         },
@@ -165,19 +155,18 @@ pub(crate) fn stream<S: Simd, M: Marcher>(
 fn begin<S: Simd, M: Marcher>(
     s: S,
     marcher: M,
-    source: &impl Source<S>,
-    spans: &Spans,
+    queue: &Queue,
     range: Range<usize>,
     iteration: u32,
     rays: &mut Rays,
 ) {
-    let (at, n) = (range.start, rays.count);
+    let (at, n, spans) = (range.start, rays.count, &queue.spans);
     let (start, end) = (load(s, &spans.start, at), load(s, &spans.end, at));
-    let new = Chosen::new(start.below(end) & source.exists(s, at) & first_lanes(s, range.len()));
+    let new = Chosen::new(start.below(end) & first_lanes(s, range.len()));
     if new.none() {
         return;
     }
-    new.put3(source.ray(s, at), &mut rays.ray, n);
+    rays.ray.put(new, &queue.common, &queue.ray(s, at), n);
     let (radius, slope) = (load(s, &spans.radius, at), load(s, &spans.slope, at));
     let r = radius.abs();
     new.put(start, &mut rays.t, n);
@@ -203,26 +192,31 @@ fn begin<S: Simd, M: Marcher>(
 
 /// Evaluates the field at the next place of every ray.
 #[inline(always)]
-fn sample<S: Simd>(s: S, solid: &Solid<'_>, rays: &Rays, work: &mut Workspace) {
+fn sample<S: Simd>(s: S, solid: &Solid<'_>, common: &Common, rays: &Rays, work: &mut Workspace) {
     let points = work.points_mut();
     for i in (0..rays.count).step_by(S::f32s::LEN) {
-        let (o, d) = solid.view.split(load3(s, &rays.ray, i));
-        let at = along(o, d, load(s, &rays.t, i) + load(s, &rays.z, i).abs());
-        store3(at, points, i);
+        let ray = rays.ray.load(s, common, i);
+        let t = load(s, &rays.t, i) + load(s, &rays.z, i).abs();
+        store3(along(ray.origin, ray.direction, t), points, i);
     }
     zeroset_eval::values(s, solid.program.values(), work, rays.count);
 }
 
 /// Moves every ray on, and takes those out that arrived or left.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "separate parts of the scratch memory"
+)]
 #[inline(always)]
-fn advance<S: Simd, M: Marcher>(
+fn advance<S: Simd, M: Marcher, K: Sink<S>>(
     s: S,
     marcher: M,
     how: &Stream<'_>,
+    common: &Common,
     iteration: u32,
     rays: &mut Rays,
     work: &Workspace,
-    sink: &mut impl Sink<S>,
+    sink: &mut K,
 ) {
     let (count, points) = (rays.count, work.points());
     let mut kept = 0;
@@ -244,15 +238,16 @@ fn advance<S: Simd, M: Marcher>(
         let first = LaneMask(first);
         let f = sided(value, word);
         let to = at.t + at.z.abs();
-        let ray = load3(s, &rays.ray, i);
+        let ray = rays.ray.load(s, common, i);
         let clearance = (f - how.width.at(to)) * how.share;
-        let reach = how.reach(ray, to, load3(s, points, i));
+        let reach = how.reach(&ray, to, load3(s, points, i));
         let next = marcher::advance(marcher, how.touch, at, clearance, reach, first);
-        let (step, end) = (next.step, load(s, &rays.end, i));
+        let (mut step, end) = (next.step, load(s, &rays.end, i));
         // not "above the end": a ray whose numbers are none must end too
         let within = (step.t + step.r.max(0.0)).below(end);
         let done = Chosen::new(next.hit & live);
-        let on = Chosen::new(live & !next.hit & within);
+        let mut on = Chosen::new(live & !next.hit & within);
+        let mut word = word;
         if done.count + on.count < S::f32s::LEN || !done.none() {
             let arrived = Arrived {
                 ray,
@@ -264,16 +259,33 @@ fn advance<S: Simd, M: Marcher>(
                 word,
                 iteration,
             };
-            if !done.none() {
-                sink.found(done, &arrived);
-            }
             sink.left(live & !next.hit & !within, &arrived);
+            if !done.none() {
+                sink.found(done, common, &arrived);
+            }
+            if K::CROSSES && !done.none() {
+                // behind the surface the other side is marched, from the sample that was there
+                let crossed = live & next.hit & to.above(step.t);
+                let crossed = sink.goes_on(crossed, &arrived);
+                let m = marcher.back(step.m);
+                let z = marcher.begin(-clearance, m).max(reach.least);
+                let none = S::u32s::splat(s, 0);
+                word = word ^ crossed.0.select(S::u32s::splat(s, INSIDE), none);
+                step = Step {
+                    t: Lanes::select(crossed, to, step.t),
+                    z: Lanes::select(crossed, z, step.z),
+                    r: Lanes::select(crossed, -clearance, step.r),
+                    m: Lanes::select(crossed, m, step.m),
+                };
+                let within = (step.t + step.r.max(0.0)).below(end);
+                on = Chosen::new(live & within & (!next.hit | crossed));
+            }
         }
         if on.none() {
             continue;
         }
         if !on.all() || kept != i {
-            on.put3(ray, &mut rays.ray, kept);
+            rays.ray.put(on, common, &ray, kept);
             on.put(end, &mut rays.end, kept);
         }
         on.put_words(word, &mut rays.word, kept);
@@ -289,14 +301,20 @@ fn advance<S: Simd, M: Marcher>(
 
 /// Takes out the rays that ran out of steps: the first ones of the batch.
 #[inline(always)]
-fn retire<S: Simd>(max_steps: u32, iteration: u32, rays: &mut Rays, sink: &mut impl Sink<S>) {
+fn retire<S: Simd>(
+    max_steps: u32,
+    iteration: u32,
+    common: &Common,
+    rays: &mut Rays,
+    sink: &mut impl Sink<S>,
+) {
     let old = |w: &u32| age(*w, iteration) >= max_steps;
     let spent = rays.word[..rays.count]
         .iter()
         .take_while(|w| old(w))
         .count();
     if spent > 0 {
-        (0..spent).for_each(|i| sink.spent(rays, i));
+        (0..spent).for_each(|i| sink.spent(rays, common, i));
         rays.remove_first(spent);
     }
 }
@@ -304,15 +322,17 @@ fn retire<S: Simd>(max_steps: u32, iteration: u32, rays: &mut Rays, sink: &mut i
 impl Rays {
     fn remove_first(&mut self, n: usize) {
         let rest = n..self.count;
-        for column in self.ray.iter_mut().chain([
+        let columns = [
             &mut self.t,
             &mut self.z,
             &mut self.r,
             &mut self.m,
             &mut self.end,
-        ]) {
+        ];
+        for column in columns {
             column.copy_within(rest.clone(), 0);
         }
+        self.ray.move_to_front(rest.clone());
         self.word.copy_within(rest, 0);
         self.count -= n;
     }

@@ -42,7 +42,7 @@ pub(crate) fn place<S: Simd>(
                         n,
                         &mut q.work,
                         #[inline(always)]
-                        |i| point_of(s, solid, &q.hits, k + i),
+                        |i| point_of(s, &q.hits, k + i),
                     );
                     q.counts.march += n as u64;
                     for i in (0..n).step_by(S::f32s::LEN) {
@@ -58,7 +58,7 @@ pub(crate) fn place<S: Simd>(
                     }
                 }
                 for i in (0..n).step_by(S::f32s::LEN) {
-                    let p = point_of(s, solid, &q.hits, k + i);
+                    let p = point_of(s, &q.hits, k + i);
                     store3(p, &mut q.hits.point, k + i);
                     // what is left of a value between places on both sides of the surface says nothing
                     let between = load(s, &q.hits.beyond, k + i).above(0.0);
@@ -86,8 +86,7 @@ pub(crate) fn place<S: Simd>(
 /// The radius of the footprint at the hits from `i` on.
 #[inline(always)]
 fn near<S: Simd>(s: S, solid: &Solid<'_>, hits: &Hits, i: usize) -> Lanes<S> {
-    let narrow = solid.view.narrow(load3(s, &hits.ray, i));
-    solid.view.near(load(s, &hits.t, i), narrow)
+    solid.near(&hits.ray(s, i), load(s, &hits.t, i))
 }
 
 /// Where a line through the values at both ends of the part of a ray is zero, from its beginning.
@@ -126,8 +125,9 @@ fn refine<S: Simd>(s: S, solid: &Solid<'_>, k: usize, n: usize, q: &mut Scratch)
             &mut q.work,
             #[inline(always)]
             |i| {
-                let (o, d) = solid.view.split(load3(s, &hits.ray, k + i));
-                along(o, d, load(s, &hits.t, k + i) + guess(s, hits, k + i, round))
+                let ray = hits.ray(s, k + i);
+                let t = load(s, &hits.t, k + i) + guess(s, hits, k + i, round);
+                along(ray.origin, ray.direction, t)
             },
         );
         q.counts.march += n as u64;
@@ -209,9 +209,8 @@ fn refine_rest<S: Simd>(
             break;
         }
         for (j, (part, &i)) in parts.iter().zip(&*moving).take(count).enumerate() {
-            let ray = q.hits.ray.each_ref().map(|column| column[k + i as usize]);
-            let (o, d) = solid.view.split(v3(ray[0], ray[1], ray[2]));
-            let p = (o + d * (part.t + part.guess(round))).array();
+            let ray = q.hits.rays.get(&q.hits.common, k + i as usize);
+            let p = (ray.origin + ray.direction * (part.t + part.guess(round))).array();
             for (column, x) in q.work.points_mut().iter_mut().zip(p) {
                 column.0[j] = x;
             }
@@ -224,8 +223,7 @@ fn refine_rest<S: Simd>(
             let (at, hits) = (k + i as usize, &mut q.hits);
             let inside = hits.word[at] & INSIDE != 0;
             let value = q.work.values().0[j] * if inside { -1.0 } else { 1.0 };
-            let ray = v3(hits.ray[0][at], hits.ray[1][at], hits.ray[2][at]);
-            let near = solid.view.near(part.t, solid.view.narrow(ray));
+            let near = solid.near(&hits.rays.get(&hits.common, at), part.t);
             let wanted = (near * SETTLED).max(part.t * f32::EPSILON);
             let settled = part.narrow(part.guess(round), value, wanted);
             (hits.t[at], hits.f[at]) = (part.t, part.above);
@@ -296,9 +294,9 @@ fn fill<S: Simd>(n: usize, work: &mut Workspace, point: impl Fn(usize) -> Vec3<L
 }
 
 #[inline(always)]
-fn point_of<S: Simd>(s: S, solid: &Solid<'_>, hits: &Hits, i: usize) -> Vec3<Lanes<S>> {
-    let (o, d) = solid.view.split(load3(s, &hits.ray, i));
-    along(o, d, load(s, &hits.t, i))
+fn point_of<S: Simd>(s: S, hits: &Hits, i: usize) -> Vec3<Lanes<S>> {
+    let ray = hits.ray(s, i);
+    along(ray.origin, ray.direction, load(s, &hits.t, i))
 }
 
 /// Finds the normals of all hits, on the side that is marched.
@@ -332,8 +330,8 @@ fn by_samples<S: Simd>(s: S, solid: &Solid<'_>, samples: &[[f32; 3]], q: &mut Sc
                         #[inline(always)]
                         |i| {
                             let p = load3(s, &hits.point, k + i);
-                            let narrow = solid.view.narrow(load3(s, &hits.ray, k + i));
-                            let h = step(p, solid.view.width(load(s, &hits.t, k + i), narrow));
+                            let width = solid.width(&hits.ray(s, k + i), load(s, &hits.t, k + i));
+                            let h = step(p, width);
                             along(p, splat3(s, to), h)
                         },
                     );
@@ -345,7 +343,7 @@ fn by_samples<S: Simd>(s: S, solid: &Solid<'_>, samples: &[[f32; 3]], q: &mut Sc
                     }
                 }
                 for i in (0..n).step_by(S::f32s::LEN) {
-                    finish(s, solid, &mut q.hits, k + i, load3(s, &sum, i));
+                    finish(s, &mut q.hits, k + i, load3(s, &sum, i));
                 }
             }
         },
@@ -371,7 +369,7 @@ fn by_gradients<S: Simd>(s: S, solid: &Solid<'_>, q: &mut Scratch) {
                         &mut q.work,
                         #[inline(always)]
                         |i| {
-                            let (_, d) = solid.view.split(load3(s, &hits.ray, k + i));
+                            let d = hits.ray(s, k + i).direction;
                             let by = load(s, &away.0, i) * near(s, solid, hits, k + i);
                             along(load3(s, &hits.point, k + i), d, -by)
                         },
@@ -382,8 +380,8 @@ fn by_gradients<S: Simd>(s: S, solid: &Solid<'_>, q: &mut Scratch) {
                     for i in (0..n).step_by(S::f32s::LEN) {
                         let g = load3(s, q.work.gradients(), i);
                         let old = load(s, &away.0, i);
-                        let normal = normal_of(s, solid, &q.hits, k + i, g);
-                        let (_, d) = solid.view.split(load3(s, &q.hits.ray, k + i));
+                        let normal = normal_of(s, &q.hits, k + i, g);
+                        let d = q.hits.ray(s, k + i).direction;
                         let hidden = normal.dot(d).above(0.0);
                         let normal = if attempt == 0 {
                             normal
@@ -417,22 +415,16 @@ fn by_gradients<S: Simd>(s: S, solid: &Solid<'_>, q: &mut Scratch) {
 
 /// Keeps the normal of a gradient.
 #[inline(always)]
-fn finish<S: Simd>(s: S, solid: &Solid<'_>, hits: &mut Hits, i: usize, g: Vec3<Lanes<S>>) {
-    let n = normal_of(s, solid, hits, i, g);
+fn finish<S: Simd>(s: S, hits: &mut Hits, i: usize, g: Vec3<Lanes<S>>) {
+    let n = normal_of(s, hits, i, g);
     store3(n, &mut hits.normal, i);
 }
 
 /// Normalises; where there is no gradient the normal looks back along the ray.
 #[inline(always)]
-fn normal_of<S: Simd>(
-    s: S,
-    solid: &Solid<'_>,
-    hits: &Hits,
-    i: usize,
-    g: Vec3<Lanes<S>>,
-) -> Vec3<Lanes<S>> {
+fn normal_of<S: Simd>(s: S, hits: &Hits, i: usize, g: Vec3<Lanes<S>>) -> Vec3<Lanes<S>> {
     let word = load_words(s, &hits.word, i);
-    let (_, d) = solid.view.split(load3(s, &hits.ray, i));
+    let d = hits.ray(s, i).direction;
     let square = g.length_squared();
     let fit = square.above(1e-36) & square.below(f32::INFINITY);
     let scale = square.lit(1.0) / square.sqrt();

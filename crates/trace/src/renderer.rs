@@ -33,8 +33,8 @@ use zeroset_shade::view::Region;
 /// The same scene gives the same picture, bit for bit, whatever the number of threads and the order of tiles.
 #[derive(Clone)]
 pub struct CpuRenderer {
-    pool: Arc<ThreadPool>,
-    level: Level,
+    pub(crate) pool: Arc<ThreadPool>,
+    pub(crate) level: Level,
     limits: Limits,
     sums: u64,
 }
@@ -129,7 +129,7 @@ pub struct Part {
 
 /// A scene that is ready to be rendered on the CPU.
 pub struct PreparedScene {
-    renderer: CpuRenderer,
+    pub(crate) renderer: CpuRenderer,
     pub(crate) scene: Arc<Scene>,
     pub(crate) program: Program,
     /// Where the solid is; empty where the scene has no objects.
@@ -203,6 +203,23 @@ impl PreparedScene {
             method_of,
             spare: Mutex::default(),
         }
+    }
+
+    /// Memory for a tile.
+    pub(crate) fn scratch(&self) -> Box<Scratch> {
+        let spare = (self.spare.lock())
+            .unwrap_or_else(PoisonError::into_inner)
+            .pop();
+        let mut q = spare.unwrap_or_else(|| Box::new(Scratch::new(&self.program)));
+        q.counts = Evaluations::default();
+        q
+    }
+
+    /// Keeps it for the next tile.
+    pub(crate) fn give_back(&self, q: Box<Scratch>) {
+        (self.spare.lock())
+            .unwrap_or_else(PoisonError::into_inner)
+            .push(q);
     }
 
     /// What the scene compiled to.
@@ -386,10 +403,7 @@ impl Run<'_> {
             return Done::default();
         }
         let area = Area::of(k, self.size);
-        let spare = &self.picture.spare;
-        let scratch = spare.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        let mut q = scratch.unwrap_or_else(|| Box::new(Scratch::new(self.picture.program())));
-        q.counts = Evaluations::default();
+        let mut q = self.picture.scratch();
         let done = at_level!(self.level, s => self.job.tile(s, &area, sums, &mut q, &stop));
         if stop.is_set() {
             // another thread may have set it after the last sample: then the tile is lost, which does no harm
@@ -402,7 +416,7 @@ impl Run<'_> {
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
         self.job.deliver(&area, self.size, &q, band);
-        spare.lock().unwrap_or_else(PoisonError::into_inner).push(q);
+        self.picture.give_back(q);
         self.finished
             .lock()
             .unwrap_or_else(PoisonError::into_inner)

@@ -1,6 +1,6 @@
 //! Shadows: how much of a light reaches the hits.
 
-use crate::beam::{Aim, Penumbra, stream};
+use crate::secondary::{Aim, Penumbra, from_hits};
 use crate::simd::{load3, splat, store};
 use crate::tile::{Scratch, Solid};
 use fearless_simd::{Simd, prelude::*};
@@ -128,9 +128,11 @@ pub(crate) fn shadows<S: Simd>(s: S, solid: &Solid<'_>, light: &Light, q: &mut S
     let all = 0..q.hits.count;
     q.counts.shadow += match light.shadow {
         Shadow::None => unshadowed(s, light, q),
-        Shadow::Hard => stream(s, Hard, &aim, solid, all, q),
-        Shadow::Soft { sharpness } => stream(s, Soft { sharpness }, &aim, solid, all, q),
-        Shadow::SoftClosest { sharpness } => stream(s, Closest { sharpness }, &aim, solid, all, q),
+        Shadow::Hard => from_hits(s, Hard, &aim, solid, all, q),
+        Shadow::Soft { sharpness } => from_hits(s, Soft { sharpness }, &aim, solid, all, q),
+        Shadow::SoftClosest { sharpness } => {
+            from_hits(s, Closest { sharpness }, &aim, solid, all, q)
+        }
     };
 }
 
@@ -138,13 +140,13 @@ fn unshadowed<S: Simd>(s: S, light: &Light, q: &mut Scratch) -> u64 {
     s.vectorize(
         #[inline(always)]
         || {
-            let hits = &mut q.hits;
+            let hits = &q.hits;
             for i in (0..hits.count).step_by(S::f32s::LEN) {
                 let (to, _) = towards(&light.source, load3(s, &hits.point, i));
                 let facing = load3(s, &hits.normal, i).dot(to).above(0.0);
                 store(
                     Lanes::select(facing, splat(s, 1.0), splat(s, 0.0)),
-                    &mut hits.lit,
+                    &mut q.lit,
                     i,
                 );
             }

@@ -1,11 +1,15 @@
 //! The part of a picture that one thread works on at a time, and all the memory that this takes.
 
 use crate::march::ITERATIONS;
+use crate::order::Sorting;
 use crate::planes::Planes;
+use crate::ray::{Common, Queue, Ray, RayColumns};
 use crate::simd::{Row, SLACK, Sheet, TILE_RAYS, WordRow, WordSheet};
 use crate::stop::Stop;
+use fearless_simd::Simd;
 use zeroset_eval::Workspace;
 use zeroset_field::program::Program;
+use zeroset_number::{Lanes, Real};
 use zeroset_scene::render::Evaluations;
 use zeroset_shade::view::{Region, View};
 
@@ -90,10 +94,23 @@ impl<'a> Solid<'a> {
     }
 }
 
+impl Solid<'_> {
+    /// The radius of the footprint at the distance `t` of a ray.
+    #[inline(always)]
+    pub(crate) fn near<R: Real<Scalar = f32>>(&self, ray: &Ray<R>, t: R) -> R {
+        self.view.near(ray.way(t), ray.narrow)
+    }
+
+    /// The width of a pixel at the distance `t` of a ray.
+    #[inline(always)]
+    pub(crate) fn width<R: Real<Scalar = f32>>(&self, ray: &Ray<R>, t: R) -> R {
+        self.view.width(ray.way(t), ray.narrow)
+    }
+}
+
 /// Rays on their way, one a lane.
 pub(crate) struct Rays {
-    /// What differs from ray to ray: direction (pinhole) or origin.
-    pub(crate) ray: [Row; 3],
+    pub(crate) ray: RayColumns<Row>,
     pub(crate) t: Row,
     pub(crate) z: Row,
     pub(crate) r: Row,
@@ -105,8 +122,8 @@ pub(crate) struct Rays {
     pub(crate) count: usize,
 }
 
-/// Shadow rays on their way, one a lane.
-pub(crate) struct Beams {
+/// Secondary rays on their way, one a lane: see [`crate::secondary`].
+pub(crate) struct SecondaryRays {
     pub(crate) origin: [Row; 3],
     pub(crate) direction: [Row; 3],
     pub(crate) t: Row,
@@ -123,17 +140,30 @@ pub(crate) struct Beams {
     pub(crate) count: usize,
 }
 
-/// Shadow rays that ended.
+/// Secondary rays that ended.
 pub(crate) struct Ended {
     pub(crate) light: Box<Sheet>,
     pub(crate) word: Box<WordSheet>,
     pub(crate) count: usize,
 }
 
+/// A ray that ran out of steps.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Exhausted {
+    pub(crate) ray: Ray<f32>,
+    /// Up to here nothing was passed.
+    pub(crate) t: f32,
+    pub(crate) end: f32,
+    /// See [`crate::march`].
+    pub(crate) word: u32,
+}
+
 /// Where rays ended on a surface, in the order in which they did.
 pub(crate) struct Hits {
     pub(crate) count: usize,
-    pub(crate) ray: [Box<Sheet>; 3],
+    pub(crate) rays: RayColumns<Box<Sheet>>,
+    /// What the rays have in common.
+    pub(crate) common: Common,
     /// Distance along the ray: the last place that is not behind the surface, then the surface.
     pub(crate) t: Box<Sheet>,
     /// How much farther the ray is behind the surface; zero where it ended before.
@@ -142,7 +172,7 @@ pub(crate) struct Hits {
     pub(crate) f: Box<Sheet>,
     /// The same behind the surface.
     pub(crate) behind: Box<Sheet>,
-    /// Pixel and side.
+    /// Number of the ray in its queue, and side.
     pub(crate) word: Box<WordSheet>,
     /// Evaluations of the ray.
     pub(crate) steps: Box<Sheet>,
@@ -165,8 +195,6 @@ pub(crate) struct Hits {
     pub(crate) open: Box<Sheet>,
     /// Mean direction that is not occluded, normalised.
     pub(crate) bent: [Box<Sheet>; 3],
-    /// Visibility of the light at hand.
-    pub(crate) lit: Box<Sheet>,
     /// Visibility of all lights.
     pub(crate) shadow: Box<Sheet>,
     /// What the lights would be without shadows.
@@ -179,6 +207,14 @@ pub(crate) struct Hits {
     pub(crate) colour: [Box<Sheet>; 3],
 }
 
+impl Hits {
+    /// The rays of the hits from number `i` on.
+    #[inline(always)]
+    pub(crate) fn ray<S: Simd>(&self, s: S, i: usize) -> Ray<Lanes<S>> {
+        self.rays.load(s, &self.common, i)
+    }
+}
+
 /// Where rays start and end, and the slope of the field where they start.
 pub(crate) struct Spans {
     pub(crate) start: Box<Sheet>,
@@ -189,7 +225,7 @@ pub(crate) struct Spans {
 }
 
 impl Spans {
-    fn new() -> Spans {
+    pub(crate) fn new() -> Spans {
         Spans {
             start: Sheet::boxed(),
             end: Sheet::boxed(),
@@ -204,20 +240,23 @@ pub(crate) struct Scratch {
     pub(crate) work: Workspace,
     /// Where in its pixel each ray goes through.
     pub(crate) jitter: [Box<Sheet>; 2],
-    /// The spans of cells, in the end those of pixels.
-    pub(crate) spans: Spans,
+    /// Cells, in the end the rays of pixels.
+    pub(crate) queue: Queue,
     /// The spans of the cells that are larger by one size.
     pub(crate) parents: Spans,
     /// The spans that are being found.
     pub(crate) next: Spans,
     pub(crate) rays: Box<Rays>,
-    pub(crate) beams: Box<Beams>,
+    pub(crate) secondary: Box<SecondaryRays>,
     pub(crate) ended: Ended,
+    /// How much reaches each hit of what secondary rays look for.
+    pub(crate) lit: Box<Sheet>,
     pub(crate) hits: Hits,
     /// Evaluations of the rays that hit nothing, by pixel.
     pub(crate) steps: Box<Sheet>,
-    /// Words of the rays that ran out of steps, and where they were.
-    pub(crate) exhausted: Vec<(u32, f32)>,
+    pub(crate) exhausted: Vec<Exhausted>,
+    /// Memory to put the hits in another order.
+    pub(crate) sorting: Sorting,
     /// Random numbers of the hits.
     pub(crate) scramble: [Vec<u32>; 2],
     /// Sines of the clearances of the occlusion's cones.
@@ -232,15 +271,15 @@ fn sheet3() -> [Box<Sheet>; 3] {
 
 impl Scratch {
     pub(crate) fn new(program: &Program) -> Scratch {
-        let row = || *Row::boxed();
+        let row = || Row::ZERO;
         Scratch {
             work: Workspace::new(program.values(), program.marks()),
             jitter: [Sheet::boxed(), Sheet::boxed()],
-            spans: Spans::new(),
+            queue: Queue::new(),
             parents: Spans::new(),
             next: Spans::new(),
             rays: Box::new(Rays {
-                ray: [row(), row(), row()],
+                ray: RayColumns::new(row),
                 t: row(),
                 z: row(),
                 r: row(),
@@ -249,7 +288,7 @@ impl Scratch {
                 word: *WordRow::boxed(),
                 count: 0,
             }),
-            beams: Box::new(Beams {
+            secondary: Box::new(SecondaryRays {
                 origin: [row(), row(), row()],
                 direction: [row(), row(), row()],
                 t: row(),
@@ -267,9 +306,11 @@ impl Scratch {
                 word: WordSheet::boxed(),
                 count: 0,
             },
+            lit: Sheet::boxed(),
             hits: Hits {
                 count: 0,
-                ray: sheet3(),
+                rays: RayColumns::new(Sheet::boxed),
+                common: Common::default(),
                 t: Sheet::boxed(),
                 beyond: Sheet::boxed(),
                 f: Sheet::boxed(),
@@ -288,7 +329,6 @@ impl Scratch {
                 orbit: std::array::from_fn(|_| Sheet::boxed()),
                 open: Sheet::boxed(),
                 bent: sheet3(),
-                lit: Sheet::boxed(),
                 shadow: Sheet::boxed(),
                 shares: Sheet::boxed(),
                 diffuse: sheet3(),
@@ -298,6 +338,7 @@ impl Scratch {
             },
             steps: Sheet::boxed(),
             exhausted: Vec::with_capacity(WIDTH * HEIGHT),
+            sorting: Sorting::new(),
             scramble: [vec![0; TILE_RAYS + SLACK], vec![0; TILE_RAYS + SLACK]],
             clearance: std::array::from_fn(|_| Sheet::boxed()),
             planes: Planes::new(),

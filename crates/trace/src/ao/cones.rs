@@ -67,40 +67,40 @@ pub(super) fn cones<S: Simd>(
 /// there is no end to it. Balls that touch the same place hold each other, so few radii are enough.
 #[inline(always)]
 fn touch<S: Simd>(s: S, solid: &Solid<'_>, far: f32, range: Range<usize>, q: &mut Scratch) {
-    // of the beams: `t` is the radius that is tried, `r` the largest that is empty, `z` the least that is not
-    q.beams.count = 0;
+    // of the rays: `t` is the radius that is tried, `r` the largest that is empty, `z` the least that is not
+    q.secondary.count = 0;
     q.ended.count = 0;
     let mut next = range.start;
     loop {
-        while next < range.end && q.beams.count + S::f32s::LEN <= BATCH {
-            let (hits, beams) = (&q.hits, &mut *q.beams);
-            let n = beams.count;
+        while next < range.end && q.secondary.count + S::f32s::LEN <= BATCH {
+            let (hits, rays) = (&q.hits, &mut *q.secondary);
+            let n = rays.count;
             let new = Chosen::new(first_lanes(s, range.end - next));
             let (origin, normal, word) = from(s, hits, next);
-            new.put3(origin, &mut beams.origin, n);
-            new.put3(normal, &mut beams.direction, n);
-            new.put_words(word, &mut beams.word, n);
+            new.put3(origin, &mut rays.origin, n);
+            new.put3(normal, &mut rays.direction, n);
+            new.put_words(word, &mut rays.word, n);
             let first = (load(s, &hits.offset, next) * START).min(far);
-            new.put(first, &mut beams.t, n);
-            new.put(splat(s, 0.0), &mut beams.r, n);
-            new.put(splat(s, 0.0), &mut beams.z, n);
-            beams.count += new.count;
+            new.put(first, &mut rays.t, n);
+            new.put(splat(s, 0.0), &mut rays.r, n);
+            new.put(splat(s, 0.0), &mut rays.z, n);
+            rays.count += new.count;
             next += S::f32s::LEN;
         }
-        let count = q.beams.count;
+        let count = q.secondary.count;
         if count == 0 || solid.stop.is_set() {
             break;
         }
         look(s, solid, q);
-        let (beams, ended, values) = (&mut *q.beams, &mut q.ended, q.work.values());
+        let (rays, ended, values) = (&mut *q.secondary, &mut q.ended, q.work.values());
         let mut kept = 0;
         for i in (0..count).step_by(S::f32s::LEN) {
-            let word = load_words(s, &beams.word, i);
+            let word = load_words(s, &rays.word, i);
             let f = sided(load(s, &values.0, i), word);
-            let t = load(s, &beams.t, i);
+            let t = load(s, &rays.t, i);
             let empty = f.above(t * EMPTY);
-            let large = Lanes::select(empty, t, load(s, &beams.r, i));
-            let least = Lanes::select(empty, load(s, &beams.z, i), t);
+            let large = Lanes::select(empty, t, load(s, &rays.r, i));
+            let least = Lanes::select(empty, load(s, &rays.z, i), t);
             let found = least.above(0.0);
             let narrow = (large * least).sqrt();
             let t = Lanes::select(found, narrow, (t * GROWTH).min(far));
@@ -111,15 +111,15 @@ fn touch<S: Simd>(s: S, solid: &Solid<'_>, far: f32, range: Range<usize>, q: &mu
             done.put(large, &mut ended.light, ended.count);
             done.put_words(word, &mut ended.word, ended.count);
             ended.count += done.count;
-            on.put3(load3(s, &beams.origin, i), &mut beams.origin, kept);
-            on.put3(load3(s, &beams.direction, i), &mut beams.direction, kept);
-            on.put_words(word, &mut beams.word, kept);
-            on.put(t, &mut beams.t, kept);
-            on.put(large, &mut beams.r, kept);
-            on.put(least, &mut beams.z, kept);
+            on.put3(load3(s, &rays.origin, i), &mut rays.origin, kept);
+            on.put3(load3(s, &rays.direction, i), &mut rays.direction, kept);
+            on.put_words(word, &mut rays.word, kept);
+            on.put(t, &mut rays.t, kept);
+            on.put(large, &mut rays.r, kept);
+            on.put(least, &mut rays.z, kept);
             kept += on.count;
         }
-        beams.count = kept;
+        rays.count = kept;
     }
     for i in 0..q.ended.count {
         q.hits.ball[(q.ended.word[i] & ORDINAL) as usize] = q.ended.light[i];
@@ -144,10 +144,10 @@ fn from<S: Simd>(
     (origin, normal, ordinal | side)
 }
 
-/// Samples all beams where they are.
+/// Samples all rays where they are.
 #[inline(always)]
 fn look<S: Simd>(s: S, solid: &Solid<'_>, q: &mut Scratch) {
-    let (beams, count) = (&*q.beams, q.beams.count);
+    let (rays, count) = (&*q.secondary, q.secondary.count);
     sample(
         s,
         solid,
@@ -156,9 +156,9 @@ fn look<S: Simd>(s: S, solid: &Solid<'_>, q: &mut Scratch) {
         #[inline(always)]
         |i| {
             along(
-                load3(s, &beams.origin, i),
-                load3(s, &beams.direction, i),
-                load(s, &beams.t, i),
+                load3(s, &rays.origin, i),
+                load3(s, &rays.direction, i),
+                load(s, &rays.t, i),
             )
         },
     );
@@ -182,15 +182,15 @@ fn march<S: Simd>(
     range: Range<usize>,
     q: &mut Scratch,
 ) {
-    q.beams.count = 0;
+    q.secondary.count = 0;
     q.ended.count = 0;
     let (mut next, mut iteration) = (range.start, 0u32);
     loop {
-        while next < range.end && q.beams.count + S::f32s::LEN <= BATCH {
+        while next < range.end && q.secondary.count + S::f32s::LEN <= BATCH {
             start(s, solid, cone, next..range.end, iteration, q);
             next += S::f32s::LEN;
         }
-        if q.beams.count == 0 || solid.stop.is_set() {
+        if q.secondary.count == 0 || solid.stop.is_set() {
             break;
         }
         look(s, solid, q);
@@ -209,8 +209,8 @@ fn start<S: Simd>(
     iteration: u32,
     q: &mut Scratch,
 ) {
-    let (hits, beams) = (&q.hits, &mut *q.beams);
-    let (at, n) = (range.start, beams.count);
+    let (hits, rays) = (&q.hits, &mut *q.secondary);
+    let (at, n) = (range.start, rays.count);
     let ball = load(s, &hits.ball, at);
     let new = Chosen::new(ball.below(cone.far) & first_lanes(s, range.len()));
     if new.none() {
@@ -225,48 +225,48 @@ fn start<S: Simd>(
         .leave(origin, to, splat(s, SURE * FULL), offset)
         .min(cone.far)
         .max(t);
-    new.put3(origin, &mut beams.origin, n);
-    new.put3(to, &mut beams.direction, n);
-    new.put(t, &mut beams.t, n);
-    new.put(splat(s, 0.0), &mut beams.z, n);
-    new.put(splat(s, 0.0), &mut beams.r, n);
-    new.put(splat(s, cone.cosine), &mut beams.m, n);
-    new.put(splat(s, FULL), &mut beams.light, n);
-    new.put(end, &mut beams.end, n);
+    new.put3(origin, &mut rays.origin, n);
+    new.put3(to, &mut rays.direction, n);
+    new.put(t, &mut rays.t, n);
+    new.put(splat(s, 0.0), &mut rays.z, n);
+    new.put(splat(s, 0.0), &mut rays.r, n);
+    new.put(splat(s, cone.cosine), &mut rays.m, n);
+    new.put(splat(s, FULL), &mut rays.light, n);
+    new.put(end, &mut rays.end, n);
     if solid.skins {
         let size = origin.x.abs() + origin.y.abs() + origin.z.abs();
-        new.put(skin::touch(offset, size), &mut beams.least, n);
+        new.put(skin::touch(offset, size), &mut rays.least, n);
     }
     new.put_words(
         word | (iteration & ITERATIONS) << ORDINAL_BITS,
-        &mut beams.word,
+        &mut rays.word,
         n,
     );
-    beams.count += new.count;
+    rays.count += new.count;
 }
 
 /// Takes the samples in, and ends the cones that hit something, have left the scene or have had all their steps.
 #[inline(always)]
 fn advance<S: Simd>(s: S, skins: bool, steps: u32, iteration: u32, q: &mut Scratch) {
-    let (beams, ended, values) = (&mut *q.beams, &mut q.ended, q.work.values());
-    let count = beams.count;
+    let (rays, ended, values) = (&mut *q.secondary, &mut q.ended, q.work.values());
+    let count = rays.count;
     let mut kept = 0;
     for i in (0..count).step_by(S::f32s::LEN) {
-        let word = load_words(s, &beams.word, i);
+        let word = load_words(s, &rays.word, i);
         let f = sided(load(s, &values.0, i), word);
         let (t, z, r) = (
-            load(s, &beams.t, i),
-            load(s, &beams.z, i),
-            load(s, &beams.r, i),
+            load(s, &rays.t, i),
+            load(s, &rays.z, i),
+            load(s, &rays.r, i),
         );
-        let (m, end) = (load(s, &beams.m, i), load(s, &beams.end, i));
+        let (m, end) = (load(s, &rays.m, i), load(s, &rays.end, i));
         // where the balls around two samples do not touch there may be something between them: back to where they do
         let gap = z.above(r) & (r + f).below(z);
         // steps that find out whether something is touched are kept
-        let touch = load(s, &beams.least, i);
+        let touch = load(s, &rays.least, i);
         let gap = if skins { gap & z.above(touch) } else { gap };
         let open = f.above(t * BLOCKED);
-        let before = load(s, &beams.light, i);
+        let before = load(s, &rays.light, i);
         let least = Lanes::select(gap, before, before.min(f / t));
         // what blocks a cone may be a skin: it goes on until it touches something or moves away, and where it touched, until
         // it is behind a surface
@@ -309,13 +309,13 @@ fn advance<S: Simd>(s: S, skins: bool, steps: u32, iteration: u32, q: &mut Scrat
             }
         }
         if !on.all() || kept != i {
-            on.put3(load3(s, &beams.origin, i), &mut beams.origin, kept);
-            on.put3(load3(s, &beams.direction, i), &mut beams.direction, kept);
-            on.put(end, &mut beams.end, kept);
+            on.put3(load3(s, &rays.origin, i), &mut rays.origin, kept);
+            on.put3(load3(s, &rays.direction, i), &mut rays.direction, kept);
+            on.put(end, &mut rays.end, kept);
             if skins {
-                on.put(touch, &mut beams.least, kept);
+                on.put(touch, &mut rays.least, kept);
             }
-            on.put_words(word, &mut beams.word, kept);
+            on.put_words(word, &mut rays.word, kept);
         }
         let step = to_edge.max(f);
         let step = if skins {
@@ -325,14 +325,14 @@ fn advance<S: Simd>(s: S, skins: bool, steps: u32, iteration: u32, q: &mut Scrat
             step
         };
         let step = step.min(end - t);
-        on.put(Lanes::select(gap, t - z + r, t + step), &mut beams.t, kept);
-        on.put(Lanes::select(gap, r, step), &mut beams.z, kept);
-        on.put(Lanes::select(gap, r, f), &mut beams.r, kept);
-        on.put(slope, &mut beams.m, kept);
-        on.put(least, &mut beams.light, kept);
+        on.put(Lanes::select(gap, t - z + r, t + step), &mut rays.t, kept);
+        on.put(Lanes::select(gap, r, step), &mut rays.z, kept);
+        on.put(Lanes::select(gap, r, f), &mut rays.r, kept);
+        on.put(slope, &mut rays.m, kept);
+        on.put(least, &mut rays.light, kept);
         kept += on.count;
     }
-    beams.count = kept;
+    rays.count = kept;
 }
 
 /// Sums up what the cones of each hit see.

@@ -1,6 +1,6 @@
 //! Occlusion by rays over the hemisphere: the reference.
 
-use crate::beam::{Aim, Penumbra, stream};
+use crate::secondary::{Aim, Penumbra, from_hits};
 use crate::simd::{load_words, splat};
 use crate::tile::{Scratch, Solid};
 use fearless_simd::{Simd, prelude::*};
@@ -99,10 +99,10 @@ pub(super) fn hemisphere<S: Simd, P: Penumbra<S>>(
             reach: reach.unwrap_or(f32::INFINITY),
             scramble: &scramble,
         };
-        q.counts.occlusion += stream(s, kind, &aim, solid, range.clone(), q);
+        q.counts.occlusion += from_hits(s, kind, &aim, solid, range.clone(), q);
         for (open, lit) in q.hits.open[range.clone()]
             .iter_mut()
-            .zip(&q.hits.lit[range.clone()])
+            .zip(&q.lit[range.clone()])
         {
             *open += lit / rays as f32;
         }

@@ -66,9 +66,9 @@ pub(super) fn quilez<S: Simd>(
                 finish(s, scale * QUILEZ_FALL, range.clone(), q);
                 return;
             }
-            q.beams.count = 0;
+            q.secondary.count = 0;
             for at in range.clone().step_by(S::f32s::LEN) {
-                let (hits, beams) = (&mut q.hits, &mut *q.beams);
+                let (hits, rays) = (&mut q.hits, &mut *q.secondary);
                 let short = load(s, &hits.open, at);
                 let more =
                     Chosen::new((short * scale).above(NOTHING) & first_lanes(s, range.end - at));
@@ -76,23 +76,23 @@ pub(super) fn quilez<S: Simd>(
                 if more.none() {
                     continue;
                 }
-                let b = beams.count;
-                more.put3(load3(s, &hits.point, at), &mut beams.origin, b);
-                more.put3(load3(s, &hits.normal, at), &mut beams.direction, b);
-                more.put(short * QUILEZ_FALL.powi(steps as i32), &mut beams.light, b);
+                let b = rays.count;
+                more.put3(load3(s, &hits.point, at), &mut rays.origin, b);
+                more.put3(load3(s, &hits.normal, at), &mut rays.direction, b);
+                more.put(short * QUILEZ_FALL.powi(steps as i32), &mut rays.light, b);
                 let side = load_words(s, &hits.word, at) & crate::simd::INSIDE;
                 let ordinal = S::u32s::from_fn(
                     s,
                     #[inline(always)]
                     |k| (at + k) as u32,
                 );
-                more.put_words(ordinal | side, &mut beams.word, b);
-                beams.count += more.count;
-                if beams.count + S::f32s::LEN > BATCH {
+                more.put_words(ordinal | side, &mut rays.word, b);
+                rays.count += more.count;
+                if rays.count + S::f32s::LEN > BATCH {
                     nearer(s, solid, steps, step, scale, q);
                 }
             }
-            if q.beams.count > 0 {
+            if q.secondary.count > 0 {
                 nearer(s, solid, steps, step, scale, q);
             }
         },
@@ -102,9 +102,9 @@ pub(super) fn quilez<S: Simd>(
 /// The nearer samples of [`quilez`], for the hits that need them.
 #[inline(always)]
 fn nearer<S: Simd>(s: S, solid: &Solid<'_>, steps: u32, step: f32, scale: f32, q: &mut Scratch) {
-    let n = q.beams.count;
+    let n = q.secondary.count;
     for k in 1..steps {
-        let (far, beams) = (k as f32 * step, &*q.beams);
+        let (far, rays) = (k as f32 * step, &*q.secondary);
         sample(
             s,
             solid,
@@ -113,8 +113,8 @@ fn nearer<S: Simd>(s: S, solid: &Solid<'_>, steps: u32, step: f32, scale: f32, q
             #[inline(always)]
             |i| {
                 along(
-                    load3(s, &beams.origin, i),
-                    load3(s, &beams.direction, i),
+                    load3(s, &rays.origin, i),
+                    load3(s, &rays.direction, i),
                     splat(s, far),
                 )
             },
@@ -124,16 +124,16 @@ fn nearer<S: Simd>(s: S, solid: &Solid<'_>, steps: u32, step: f32, scale: f32, q
         for i in (0..n).step_by(S::f32s::LEN) {
             let f = sided(
                 load(s, &q.work.values().0, i),
-                load_words(s, &q.beams.word, i),
+                load_words(s, &q.secondary.word, i),
             );
-            let sum = load(s, &q.beams.light, i) - (f - far) * weight;
-            store(sum, &mut q.beams.light, i);
+            let sum = load(s, &q.secondary.light, i) - (f - far) * weight;
+            store(sum, &mut q.secondary.light, i);
         }
     }
-    for (&word, &sum) in q.beams.word[..n].iter().zip(&q.beams.light[..n]) {
+    for (&word, &sum) in q.secondary.word[..n].iter().zip(&q.secondary.light[..n]) {
         q.hits.open[(word & crate::march::ORDINAL) as usize] = visibility(sum, scale);
     }
-    q.beams.count = 0;
+    q.secondary.count = 0;
 }
 
 /// [`visibility`] of the sums that are in place of the visibility.

@@ -1,4 +1,4 @@
-//! `bench eval`: one program over SIMD batches and one point at a time, on one thread.
+//! `bench eval`: one program over SIMD batches of `f32`, and one point of `f64` at a time, on one thread.
 
 use fearless_simd::Level;
 use serde::Serialize;
@@ -6,7 +6,7 @@ use std::hint::black_box;
 use std::time::Instant;
 use zeroset_eval::{BATCH, Point, Workspace};
 use zeroset_field::program::Program;
-use zeroset_number::v3;
+use zeroset_number::{F64, v3};
 
 /// What `bench eval` measures. Times are the best of several runs, in nanoseconds a point.
 #[derive(Clone, Debug, Serialize)]
@@ -19,7 +19,7 @@ pub(crate) struct Eval {
     pub ns_per_point: f64,
     /// Batches with gradients.
     pub ns_per_gradient: f64,
-    /// One point of `f32` at a time, the same program.
+    /// One point at a time in double precision, the same program.
     pub ns_per_point_scalar: f64,
     /// `ns_per_point_scalar / ns_per_point`
     pub simd_over_scalar: f64,
@@ -42,9 +42,12 @@ pub(crate) fn eval(program: &Program) -> Eval {
         }
     }
     let points: Vec<_> = (0..BATCH)
-        .map(|i| v3(w.points()[0].0[i], w.points()[1].0[i], w.points()[2].0[i]))
+        .map(|i| {
+            let [x, y, z] = w.points().each_ref().map(|lane| F64(lane.0[i].into()));
+            v3(x, y, z)
+        })
         .collect();
-    let mut one = Point::<f32>::new(program.values());
+    let mut one = Point::<F64>::new(program.values());
     let (mut values, mut gradients, mut scalar) = (f64::MAX, f64::MAX, f64::MAX);
     // in turn, so that a machine that changes its pace changes all three
     for _ in 0..RUNS {
