@@ -80,6 +80,8 @@ pub struct JoinEntry {
     pub info: Info,
     /// See [`Join::SHARP`].
     pub sharp: bool,
+    /// See [`Join::ASSOCIATIVE`].
+    pub associative: bool,
     /// More parameter sets worth a proof.
     pub samples: &'static [&'static [f64]],
     /// Place in the list: the instruction's code.
@@ -223,6 +225,7 @@ fn join<E: Join>() -> JoinEntry {
     JoinEntry {
         info: E::INFO,
         sharp: E::SHARP,
+        associative: E::ASSOCIATIVE,
         samples: E::SAMPLES,
         code: 0,
         lipschitz: E::lipschitz,

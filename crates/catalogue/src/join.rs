@@ -22,6 +22,7 @@ impl Join for Union {
         params: &[],
     };
     const SHARP: bool = true;
+    const ASSOCIATIVE: bool = true;
     #[inline(always)]
     fn join<R: Real>(x: R, y: R, _a: Args<'_, R>) -> R {
         x.min(y)
@@ -58,6 +59,7 @@ impl Join for Intersection {
         params: &[],
     };
     const SHARP: bool = true;
+    const ASSOCIATIVE: bool = true;
     #[inline(always)]
     fn join<R: Real>(x: R, y: R, _a: Args<'_, R>) -> R {
         x.max(y)

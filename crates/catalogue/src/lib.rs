@@ -361,6 +361,8 @@ pub trait Join: 'static {
     /// Whether only the signs of the operands matter for the shape of the result (sharp joins). The compiler then divides
     /// each operand by its own slope; otherwise the values are lengths, are kept, and the result is divided.
     const SHARP: bool;
+    /// Whether operands may be joined in any grouping, to the bit, as by `min` and `max`. Such a join takes no parameters.
+    const ASSOCIATIVE: bool = false;
     /// More parameter sets that the proofs run at, beside the defaults.
     const SAMPLES: &'static [&'static [f64]] = &[];
     /// The new value from the two.

@@ -48,11 +48,12 @@ impl Map for Symmetry {
         &[&[0.0, 0.0, 0.0], &[1.0, 0.0, 1.0], &[0.0, 1.0, 0.0]];
     #[inline(always)]
     fn map<R: Real>(p: Vec3<R>, a: Args<'_, R>) -> Vec3<R> {
-        let [x, y, z] = [(p.x, 0), (p.y, 1), (p.z, 2)].map(
-            #[inline(always)]
-            |(c, k): (R, usize)| R::select(c.like(a.get(k)).above(0.5), c.abs(), c),
-        );
-        v3(x, y, z)
+        let folds = v3(p.x.like(a.get(0)), p.y.like(a.get(1)), p.z.like(a.get(2)));
+        v3(
+            R::select(folds.x.above(0.5), p.x.abs(), p.x),
+            R::select(folds.y.above(0.5), p.y.abs(), p.y),
+            R::select(folds.z.above(0.5), p.z.abs(), p.z),
+        )
     }
     fn stretch(_a: &[f64], _bounds: &Aabb) -> Result<Stretch, String> {
         Ok(Stretch::Everywhere(1.0))
@@ -171,11 +172,11 @@ impl Map for Elongate {
     #[inline(always)]
     fn map<R: Real>(p: Vec3<R>, a: Args<'_, R>) -> Vec3<R> {
         let h = a.vec3(0).scale(0.5);
-        let [x, y, z] = [(p.x, h.x), (p.y, h.y), (p.z, h.z)].map(
-            #[inline(always)]
-            |(c, h): (R, R::Scalar)| (c + h).min(0.0).max(c - h),
-        );
-        v3(x, y, z)
+        v3(
+            (p.x + h.x).min(0.0).max(p.x - h.x),
+            (p.y + h.y).min(0.0).max(p.y - h.y),
+            (p.z + h.z).min(0.0).max(p.z - h.z),
+        )
     }
     fn stretch(_a: &[f64], _bounds: &Aabb) -> Result<Stretch, String> {
         Ok(Stretch::Everywhere(1.0))

@@ -2,6 +2,7 @@
 
 use fearless_simd::{Level, Simd, SimdBase};
 use std::marker::PhantomData;
+use std::ops::Range;
 use zeroset_catalogue::op::*;
 use zeroset_catalogue::tape::{Instruction, Operation, Tape};
 use zeroset_catalogue::{each_change, each_leaf, each_pair, each_warp};
@@ -207,10 +208,17 @@ fn load3<S: Simd, N: Slot<S>>(s: S, lanes: &[Lane], i: usize) -> Vec3<N> {
 
 pub(super) type Kernel<S> = fn(S, &Instruction, &Data, &mut [Lane], usize);
 
+/// The lanes of `count` numbers of a type from register `at` on.
+#[inline(always)]
+fn span<S: Simd, N: Slot<S>>(at: u16, count: usize) -> Range<usize> {
+    let at = usize::from(at) * N::WIDTH;
+    at..at + count * N::WIDTH
+}
+
 /// Splits the registers into what an instruction writes and what it reads.
 #[inline(always)]
-fn split<const M: usize>(lanes: &mut [Lane], spans: [(u16, usize); M]) -> [&mut [Lane]; M] {
-    (lanes.get_disjoint_mut(spans.map(|(at, len)| usize::from(at)..usize::from(at) + len)))
+fn split<const M: usize>(lanes: &mut [Lane], spans: [Range<usize>; M]) -> [&mut [Lane]; M] {
+    (lanes.get_disjoint_mut(spans))
         .expect("the compiler gives operands and results different registers")
 }
 
@@ -222,13 +230,7 @@ fn leaf<S: Simd, N: Slot<S>, E: Leaf>(
     lanes: &mut [Lane],
     n: usize,
 ) {
-    let [out, p] = split(
-        lanes,
-        [
-            (i.out * N::WIDTH as u16, N::WIDTH),
-            (i.a * N::WIDTH as u16, 3 * N::WIDTH),
-        ],
-    );
+    let [out, p] = split(lanes, [span::<S, N>(i.out, 1), span::<S, N>(i.a, 3)]);
     let a = Args {
         store: data,
         at: i.at as usize,
@@ -252,7 +254,7 @@ fn warp<S: Simd, N: Slot<S>, E: Warp>(
     n: usize,
 ) {
     let w = N::WIDTH;
-    let [out, p] = split(lanes, [(i.out * w as u16, 3 * w), (i.a * w as u16, 3 * w)]);
+    let [out, p] = split(lanes, [span::<S, N>(i.out, 3), span::<S, N>(i.a, 3)]);
     let a = Args {
         store: data,
         at: i.at as usize,
@@ -278,15 +280,12 @@ fn change<S: Simd, N: Slot<S>, E: Change>(
     lanes: &mut [Lane],
     n: usize,
 ) {
-    let w = N::WIDTH;
-    let [out, d, p] = split(
-        lanes,
-        [
-            (i.out * w as u16, w),
-            (i.a * w as u16, w),
-            (i.b * w as u16, 3 * w),
-        ],
-    );
+    let spans = [
+        span::<S, N>(i.out, 1),
+        span::<S, N>(i.a, 1),
+        span::<S, N>(i.b, 3),
+    ];
+    let [out, d, p] = split(lanes, spans);
     let a = Args {
         store: data,
         at: i.at as usize,
@@ -309,15 +308,12 @@ fn pair<S: Simd, N: Slot<S>, E: Pair>(
     lanes: &mut [Lane],
     n: usize,
 ) {
-    let w = N::WIDTH;
-    let [out, x, y] = split(
-        lanes,
-        [
-            (i.out * w as u16, w),
-            (i.a * w as u16, w),
-            (i.b * w as u16, w),
-        ],
-    );
+    let spans = [
+        span::<S, N>(i.out, 1),
+        span::<S, N>(i.a, 1),
+        span::<S, N>(i.b, 1),
+    ];
+    let [out, x, y] = split(lanes, spans);
     let a = Args {
         store: data,
         at: i.at as usize,
@@ -334,8 +330,7 @@ fn pair<S: Simd, N: Slot<S>, E: Pair>(
 
 #[inline(never)]
 fn mark<S: Simd, N: Slot<S>>(_s: S, i: &Instruction, _data: &Data, lanes: &mut [Lane], _n: usize) {
-    let w = N::WIDTH;
-    let [out, x] = split(lanes, [(i.out * w as u16, w), (i.a * w as u16, w)]);
+    let [out, x] = split(lanes, [span::<S, N>(i.out, 1), span::<S, N>(i.a, 1)]);
     out.copy_from_slice(x);
 }
 

@@ -39,4 +39,4 @@ mod point;
 pub use batch::{BATCH, Lane, Workspace, gradients, values};
 pub use evaluator::{Evaluator, LengthError};
 pub use marks::{Marks, marks};
-pub use point::{Number, Point};
+pub use point::{Point, PointNumber};

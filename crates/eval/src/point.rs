@@ -7,7 +7,7 @@ use zeroset_catalogue::{each_change, each_leaf, each_pair, each_warp};
 use zeroset_number::{Args, Data, Dual, F64, Interval, Real, Vec3};
 
 /// Number types that tapes are evaluated over one point at a time. Their kernels are compiled here and nowhere else.
-pub trait Number: Real<Store = Data> + sealed::Sealed {
+pub trait PointNumber: Real<Store = Data> + sealed::Sealed {
     /// Runs the instructions of a tape over registers.
     #[doc(hidden)]
     fn run(tape: Tape<'_>, registers: &mut [Self]);
@@ -20,11 +20,11 @@ mod sealed {
 macro_rules! numbers {
     ($($number:ty),*) => {$(
         impl sealed::Sealed for $number {}
-        impl Number for $number {
+        impl PointNumber for $number {
             #[inline(never)]
             fn run(tape: Tape<'_>, registers: &mut [Self]) {
                 for i in &tape.code.instructions {
-                    Steps::<$number>::of(i.operation)(i, tape.data, registers);
+                    PointKernels::<$number>::of(i.operation)(i, tape.data, registers);
                 }
             }
         }
@@ -40,7 +40,7 @@ pub struct Point<'t, R> {
     registers: Vec<R>,
 }
 
-impl<'t, R: Number> Point<'t, R> {
+impl<'t, R: PointNumber> Point<'t, R> {
     /// An evaluator of `tape`.
     pub fn new(tape: Tape<'t>) -> Self {
         Point {
@@ -61,7 +61,7 @@ impl<'t, R: Number> Point<'t, R> {
     }
 }
 
-type Step<R> = fn(&Instruction, &Data, &mut [R]);
+type PointKernel<R> = fn(&Instruction, &Data, &mut [R]);
 
 #[inline(always)]
 fn point<R: Real>(registers: &[R], at: u16) -> Vec3<R> {
@@ -101,21 +101,21 @@ fn mark<R: Real>(i: &Instruction, _data: &Data, r: &mut [R]) {
     r[usize::from(i.out)] = r[usize::from(i.a)];
 }
 
-struct Steps<R>(PhantomData<R>);
+struct PointKernels<R>(PhantomData<R>);
 
 macro_rules! leaves { ($($entry:ty,)*) => { &[$(leaf::<R, $entry>),*] }; }
 macro_rules! warps { ($($entry:ty,)*) => { &[$(warp::<R, $entry>),*] }; }
 macro_rules! changes { ($($entry:ty,)*) => { &[$(change::<R, $entry>),*] }; }
 macro_rules! pairs { ($($entry:ty,)*) => { &[$(pair::<R, $entry>),*] }; }
 
-impl<R: Real<Store = Data> + 'static> Steps<R> {
-    const LEAVES: &'static [Step<R>] = each_leaf!(leaves);
-    const WARPS: &'static [Step<R>] = each_warp!(warps);
-    const CHANGES: &'static [Step<R>] = each_change!(changes);
-    const PAIRS: &'static [Step<R>] = each_pair!(pairs);
+impl<R: Real<Store = Data> + 'static> PointKernels<R> {
+    const LEAVES: &'static [PointKernel<R>] = each_leaf!(leaves);
+    const WARPS: &'static [PointKernel<R>] = each_warp!(warps);
+    const CHANGES: &'static [PointKernel<R>] = each_change!(changes);
+    const PAIRS: &'static [PointKernel<R>] = each_pair!(pairs);
 
     #[inline(always)]
-    fn of(operation: Operation) -> Step<R> {
+    fn of(operation: Operation) -> PointKernel<R> {
         match operation {
             Operation::Leaf(code) => Self::LEAVES[usize::from(code)],
             Operation::Warp(code) => Self::WARPS[usize::from(code)],

@@ -6,7 +6,7 @@ use zeroset_catalogue::bounds::Aabb;
 use zeroset_catalogue::entries::catalogue;
 use zeroset_eval::Point;
 use zeroset_field::field::{Field, FieldError, MAX_DEPTH, Paint};
-use zeroset_field::formula::{Budget, Builder, Formula, MAX_STEPS, Step, Steps, Unary};
+use zeroset_field::formula::{Budget, Builder, Formula, MAX_STEPS, FormulaStep, Steps, Unary};
 use zeroset_field::placement::Placement;
 use zeroset_field::program::{Limits, Program};
 use zeroset_field::repetition::{Polar, Repetition};
@@ -154,9 +154,9 @@ fn long_formulas() {
 
 #[test]
 fn the_longest_formula() {
-    let mut steps = vec![Step::Coordinate(0), Step::Coordinate(1)];
+    let mut steps = vec![FormulaStep::Coordinate(0), FormulaStep::Coordinate(1)];
     while steps.len() < MAX_STEPS - 1 {
-        steps.push(Step::Unary(Unary::Sin, steps.len() as u32 - 1));
+        steps.push(FormulaStep::Unary(Unary::Sin, steps.len() as u32 - 1));
     }
     let steps = Steps::new(steps).unwrap();
     let formula = Formula::prove(steps, Aabb::centred([1.0; 3]), &Budget::default()).unwrap();

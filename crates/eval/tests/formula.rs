@@ -6,7 +6,7 @@ use zeroset_catalogue::bounds::Aabb;
 use zeroset_eval::{BATCH, Point, Workspace};
 use zeroset_field::field::Field;
 use zeroset_field::formula::{
-    Binary, Budget, Builder, Expression, Formula, ProofError, Step, Steps, Unary,
+    Binary, Budget, Builder, Expression, Formula, ProofError, FormulaStep, Steps, Unary,
 };
 use zeroset_field::program::{Limits, Program};
 use zeroset_number::{F64, Interval, v3};
@@ -184,13 +184,13 @@ fn compiled_formulas_agree_over_number_types() {
 }
 
 /// A formula of one operation, on operands that suit it.
-fn alone(step: Step) -> Formula {
+fn alone(step: FormulaStep) -> Formula {
     let list = vec![
-        Step::Coordinate(0),
-        Step::Coordinate(1),
+        FormulaStep::Coordinate(0),
+        FormulaStep::Coordinate(1),
         step,
-        Step::Constant(0.3),
-        Step::Binary(Binary::Mul, 2, 3),
+        FormulaStep::Constant(0.3),
+        FormulaStep::Binary(Binary::Mul, 2, 3),
     ];
     Formula::stated(
         Steps::new(list).unwrap(),
@@ -202,8 +202,8 @@ fn alone(step: Step) -> Formula {
 
 #[test]
 fn every_operation_compiles_to_itself() {
-    let unary = Unary::ALL.map(|f| Step::Unary(f, 0));
-    let binary = Binary::ALL.map(|f| Step::Binary(f, 0, 1));
+    let unary = Unary::ALL.map(|f| FormulaStep::Unary(f, 0));
+    let binary = Binary::ALL.map(|f| FormulaStep::Binary(f, 0, 1));
     for step in unary.into_iter().chain(binary) {
         let formula = alone(step);
         let program = compiled(formula.clone());

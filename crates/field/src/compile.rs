@@ -1,11 +1,12 @@
 //! From the tree to the list: lowering, sharing, registers.
 
 use crate::field::{Field, Node, Paint};
-use crate::formula::{Binary, Formula, Step};
+use crate::formula::{Binary, Formula, FormulaStep};
 use crate::placement::Placement;
 use crate::program::{CompileError, Limits, Program, Structure};
 use crate::repetition::{Polar, Repetition};
 use std::collections::HashMap;
+use std::ops::Range;
 use std::sync::Arc;
 use zeroset_catalogue::bounds::{Aabb, Exactness};
 use zeroset_catalogue::entries::catalogue;
@@ -175,18 +176,24 @@ impl Lowering<'_> {
                 params,
                 shapes,
             } => {
-                let mut joined = None;
-                for shape in shapes {
-                    let mut value = self.field(shape, point)?;
+                let operand = &mut |l: &mut Self, k: usize| {
+                    let value = l.field(&shapes[k], point)?;
                     if entry.sharp {
-                        value = self.unit(shape, value)?;
+                        l.unit(&shapes[k], value)
+                    } else {
+                        Ok(value)
                     }
-                    joined = Some(match joined {
-                        None => value,
-                        Some(before) => self.pair(entry.code, before, value, params)?,
-                    });
+                };
+                if entry.associative {
+                    self.balanced(entry.code, 0..shapes.len(), operand)?
+                } else {
+                    let mut joined = operand(self, 0)?;
+                    for k in 1..shapes.len() {
+                        let value = operand(self, k)?;
+                        joined = self.pair(entry.code, joined, value, params)?;
+                    }
+                    joined
                 }
-                joined.expect("Field::join refuses joins of nothing")
             }
             Node::Place { placement, shape } => self.place(placement, shape, point)?,
             Node::Repeat { repetition, shape } => self.repeat(repetition, shape, point)?,
@@ -199,6 +206,23 @@ impl Lowering<'_> {
         };
         self.known.insert((field.key(), point), value);
         Ok(value)
+    }
+
+    /// Joins operands by an associative operation without parameters, as a tree that is as low as can be. They stay in their order, so
+    /// the last of equal values wins as it would one after the other.
+    fn balanced(
+        &mut self,
+        code: u16,
+        range: Range<usize>,
+        operand: &mut dyn FnMut(&mut Self, usize) -> Result<u32, CompileError>,
+    ) -> Result<u32, CompileError> {
+        if range.len() == 1 {
+            return operand(self, range.start);
+        }
+        let middle = range.start + range.len().div_ceil(2);
+        let x = self.balanced(code, range.start..middle, operand)?;
+        let y = self.balanced(code, middle..range.end, operand)?;
+        self.pair(code, x, y, &[])
     }
 
     fn mark(&mut self, paint: Paint, value: u32) -> Result<u32, CompileError> {
@@ -278,22 +302,17 @@ impl Lowering<'_> {
         let bounds = shape.facts().bounds;
         let grid = grid(repetition);
         let on: [bool; 3] = std::array::from_fn(|k| repetition.repeats(k));
-        let mut nearest = None;
-        for copy in 0..8_u32 {
-            let bits: [f64; 3] = std::array::from_fn(|k| f64::from(copy >> k & 1));
-            if (0..3).any(|k| !on[k] && bits[k] != 0.0) {
-                continue;
-            }
-            let seed = [f64::from(repetition.seed % 289)];
+        let bit = |copy: usize, k: usize| copy >> k & 1;
+        let copies: Vec<usize> = (0..8)
+            .filter(|&copy| (0..3).all(|k| on[k] || bit(copy, k) == 0))
+            .collect();
+        let seed = [f64::from(repetition.seed % 289)];
+        let nearest = self.balanced(code::MIN, 0..copies.len(), &mut |l, i| {
+            let bits: [f64; 3] = std::array::from_fn(|k| bit(copies[i], k) as f64);
             let params = [&bits[..], &repetition.vary, &seed, &grid].concat();
-            let cell = self.warp(code::REPEAT_CELL, point, &params)?;
-            let value = self.copy(shape, cell)?;
-            nearest = Some(match nearest {
-                None => value,
-                Some(before) => self.pair(code::MIN, before, value, &[])?,
-            });
-        }
-        let nearest = nearest.expect("the copy of no bits is always there");
+            let cell = l.warp(code::REPEAT_CELL, point, &params)?;
+            l.copy(shape, cell)
+        })?;
         let (low, high): (Vec<f64>, Vec<f64>) =
             (0..3).map(|k| repetition.extent(&bounds, k)).unzip();
         self.change(
@@ -318,13 +337,13 @@ impl Lowering<'_> {
         } else {
             point
         };
-        let mut nearest = None;
-        for copy in 0..(if narrow { 2 } else { polar.count }) {
+        let copies = if narrow { 2 } else { polar.count as usize };
+        let nearest = self.balanced(code::MIN, 0..copies, &mut |l, copy| {
             let cell = if narrow {
-                let params = [f64::from(copy), polar.sector()];
-                let cell = self.warp(code::POLAR_CELL, around, &params)?;
+                let params = [copy as f64, polar.sector()];
+                let cell = l.warp(code::POLAR_CELL, around, &params)?;
                 if plane {
-                    self.warp(code::RIGID, cell, &upright)?
+                    l.warp(code::RIGID, cell, &upright)?
                 } else {
                     cell
                 }
@@ -334,16 +353,11 @@ impl Lowering<'_> {
                 } else {
                     [0.0, 1.0, 0.0]
                 };
-                let turn = Placement::turned(axis, -f64::from(copy) * polar.sector());
-                self.warp(code::RIGID, point, &inverse(&turn))?
+                let turn = Placement::turned(axis, -(copy as f64) * polar.sector());
+                l.warp(code::RIGID, point, &inverse(&turn))?
             };
-            let value = self.copy(shape, cell)?;
-            nearest = Some(match nearest {
-                None => value,
-                Some(before) => self.pair(code::MIN, before, value, &[])?,
-            });
-        }
-        let nearest = nearest.expect("Polar::check refuses no copies");
+            l.copy(shape, cell)
+        })?;
         let Some((low, high)) = Polar::angles(&bounds).filter(|_| narrow) else {
             return Ok(nearest);
         };
@@ -365,12 +379,14 @@ impl Lowering<'_> {
         let mut values = Vec::with_capacity(formula.steps().len());
         for step in formula.steps() {
             values.push(match *step {
-                Step::Coordinate(k) => self.leaf(code::COORDINATE + u16::from(k), inside, &[])?,
-                Step::Constant(c) => self.leaf(code::CONSTANT, inside, &[c])?,
-                Step::Unary(f, x) => {
+                FormulaStep::Coordinate(k) => {
+                    self.leaf(code::COORDINATE + u16::from(k), inside, &[])?
+                }
+                FormulaStep::Constant(c) => self.leaf(code::CONSTANT, inside, &[c])?,
+                FormulaStep::Unary(f, x) => {
                     self.change(code::unary(f), values[x as usize], inside, &[])?
                 }
-                Step::Binary(f, x, y) => {
+                FormulaStep::Binary(f, x, y) => {
                     self.pair(code::binary(f), values[x as usize], values[y as usize], &[])?
                 }
             });

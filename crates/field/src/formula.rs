@@ -21,7 +21,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::proof::{self, Tape};
+use crate::proof::{self, ProofTape};
 use zeroset_catalogue::bounds::Aabb;
 use zeroset_catalogue::op::arithmetic;
 use zeroset_number::{Real, Vec3};
@@ -37,7 +37,7 @@ pub use zeroset_catalogue::op::arithmetic::{Binary, Unary};
 
 /// One step of a formula; operands are the numbers of earlier steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Step {
+pub enum FormulaStep {
     /// x, y or z (0, 1, 2).
     Coordinate(u8),
     /// A number: a parameter of the compiled program, so that changing it changes no structure.
@@ -103,14 +103,14 @@ pub enum StepsError {
 
 /// The steps of a formula, the last of which is its value. Every operand comes before the step that takes it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Steps(Vec<Step>);
+pub struct Steps(Vec<FormulaStep>);
 
 impl Steps {
     /// Checks a list of steps. Whole powers are written as products, so the list may become longer.
     ///
     /// # Errors
     /// No steps or too many, operands that are no earlier steps, numbers out of range.
-    pub fn new(steps: Vec<Step>) -> Result<Steps, StepsError> {
+    pub fn new(steps: Vec<FormulaStep>) -> Result<Steps, StepsError> {
         if steps.is_empty() {
             return Err(StepsError::Empty);
         }
@@ -120,11 +120,11 @@ impl Steps {
         }
         for (step, what) in steps.iter().enumerate() {
             match *what {
-                Step::Coordinate(axis) if axis > 2 => {
+                FormulaStep::Coordinate(axis) if axis > 2 => {
                     return Err(StepsError::Coordinate { step, axis });
                 }
                 // also refuses NaN
-                Step::Constant(value) if !(-LARGEST..=LARGEST).contains(&value) => {
+                FormulaStep::Constant(value) if !(-LARGEST..=LARGEST).contains(&value) => {
                     return Err(StepsError::Constant { step, value });
                 }
                 _ => {}
@@ -139,7 +139,7 @@ impl Steps {
     }
 
     /// The steps in their order.
-    pub fn list(&self) -> &[Step] {
+    pub fn list(&self) -> &[FormulaStep] {
         &self.0
     }
 
@@ -153,23 +153,25 @@ impl Steps {
     }
 }
 
-impl Step {
+impl FormulaStep {
     /// Its value at `p`, from the values of earlier steps.
     pub(crate) fn eval<R: Real>(&self, p: Vec3<R>, values: &[R]) -> R {
         match *self {
-            Step::Coordinate(k) => [p.x, p.y, p.z][usize::from(k)],
-            Step::Constant(c) => p.x.like(R::constant(c)),
-            Step::Unary(f, x) => arithmetic::unary(f, values[x as usize]),
-            Step::Binary(f, x, y) => arithmetic::binary(f, values[x as usize], values[y as usize]),
+            FormulaStep::Coordinate(k) => [p.x, p.y, p.z][usize::from(k)],
+            FormulaStep::Constant(c) => p.x.like(R::constant(c)),
+            FormulaStep::Unary(f, x) => arithmetic::unary(f, values[x as usize]),
+            FormulaStep::Binary(f, x, y) => {
+                arithmetic::binary(f, values[x as usize], values[y as usize])
+            }
         }
     }
 
     /// The earlier steps that it takes.
     pub(crate) fn operands(&self) -> impl Iterator<Item = u32> {
         let (x, y) = match *self {
-            Step::Coordinate(_) | Step::Constant(_) => (None, None),
-            Step::Unary(_, x) => (Some(x), None),
-            Step::Binary(_, x, y) => (Some(x), Some(y)),
+            FormulaStep::Coordinate(_) | FormulaStep::Constant(_) => (None, None),
+            FormulaStep::Unary(_, x) => (Some(x), None),
+            FormulaStep::Binary(_, x, y) => (Some(x), Some(y)),
         };
         x.into_iter().chain(y)
     }
@@ -200,7 +202,7 @@ impl Formula {
     /// was found within the budget; a power or a logarithm of a number that can be negative in the box.
     pub fn prove(steps: Steps, bounds: Aabb, budget: &Budget) -> Result<Formula, ProofError> {
         let bounds = checked(bounds)?;
-        let tape = Tape::new(&steps);
+        let tape = ProofTape::new(&steps);
         proof::bases(&tape, &bounds, budget)?;
         let proof = proof::slope(&tape, &bounds, budget)?;
         let cut = proof::cut(&tape, &bounds, proof.slope, budget);
@@ -227,7 +229,7 @@ impl Formula {
         if !(f64::MIN_POSITIVE..=STEEPEST).contains(&slope) {
             return Err(ProofError::Slope { given: slope });
         }
-        let tape = Tape::new(&steps);
+        let tape = ProofTape::new(&steps);
         proof::bases(&tape, &bounds, &Budget::default())?;
         let (steepest, steepest_at) = proof::sample(&tape, &bounds);
         let cut = proof::cut(&tape, &bounds, slope, &Budget::default());
@@ -243,7 +245,7 @@ impl Formula {
     }
 
     /// The steps; the last one is the value.
-    pub fn steps(&self) -> &[Step] {
+    pub fn steps(&self) -> &[FormulaStep] {
         self.steps.list()
     }
 

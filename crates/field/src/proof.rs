@@ -17,7 +17,7 @@ use jet::Jet;
 pub(crate) use look::{cut, sample};
 pub(crate) use search::slope;
 use tape::Cell;
-pub(crate) use tape::Tape;
+pub(crate) use tape::ProofTape;
 
 /// How long a proof may search. It counts steps, not time, so that it finds the same on every machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,7 +43,7 @@ impl Default for Budget {
 
 impl Budget {
     /// Boxes that a formula may be looked at in: a few also of a long one, as long as that is a matter of a second.
-    fn cells(&self, tape: &Tape) -> u64 {
+    fn cells(&self, tape: &ProofTape) -> u64 {
         let steps = tape.steps().len() as u64;
         (self.operations / steps).max((LONGEST / steps).clamp(1, 64))
     }

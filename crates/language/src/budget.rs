@@ -9,7 +9,7 @@ const SHARE: u64 = 8;
 
 /// Bytes and seconds of one load.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Budget {
+pub(crate) struct LoadBudget {
     held: u64,
     memory: u64,
     start: Instant,
@@ -33,9 +33,9 @@ pub(crate) enum Spent {
     Time(f64),
 }
 
-impl Budget {
-    pub(crate) fn new(limits: &Limits) -> Budget {
-        Budget {
+impl LoadBudget {
+    pub(crate) fn new(limits: &Limits) -> LoadBudget {
+        LoadBudget {
             held: 0,
             memory: limits.memory / SHARE,
             start: Instant::now(),
@@ -44,10 +44,10 @@ impl Budget {
     }
 
     /// The same bytes held, with all the time again.
-    pub(crate) fn again(&self, limits: &Limits) -> Budget {
-        Budget {
+    pub(crate) fn again(&self, limits: &Limits) -> LoadBudget {
+        LoadBudget {
             held: self.held,
-            ..Budget::new(limits)
+            ..LoadBudget::new(limits)
         }
     }
 

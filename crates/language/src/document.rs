@@ -1,9 +1,10 @@
 //! Documents: scene files that were read and parsed, ready to become scenes.
 
 use crate::assets::Assets;
-use crate::budget::Budget;
+use crate::budget::LoadBudget;
 use crate::draft::Draft;
-use crate::files::{self, Cache, Files, read_ordinary};
+use crate::files::{self, Cache, Files, Reading, read_whole};
+use crate::folder::{self, Folder};
 use crate::json;
 use crate::limits::Limits;
 use crate::load::{Failed, Language, Loaded, Options};
@@ -15,6 +16,7 @@ use crate::starlark::module::{Module, parse};
 use crate::trees;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A scene file that was read, with all files that it loads. It becomes a scene as often as one likes, for other parameters,
 /// times and sizes: nothing is read, parsed or decoded again, but what it did not ask for before.
@@ -23,7 +25,7 @@ pub struct Document {
     /// The scene's own file, if it is one.
     path: Option<PathBuf>,
     body: Body,
-    files: Files,
+    files: Reading,
     cache: Cache,
 }
 
@@ -61,23 +63,24 @@ impl Document {
                 )));
             }
         };
-        let mut budget = Budget::new(limits);
+        let mut budget = LoadBudget::new(limits);
         let most = limits.file_bytes;
-        let text = read_ordinary(path, &file_name, most, "file_bytes", &mut budget)
+        let opened = folder::open(path);
+        let text = read_whole(opened, &file_name, most, "file_bytes", &mut budget)
             .and_then(|bytes| files::text(bytes, &file_name))
             .map_err(|e| fail(e.to_string()))?;
         let folder = path
             .parent()
             .filter(|p| !p.as_os_str().is_empty())
             .unwrap_or(Path::new("."));
-        let root = Some(folder.to_path_buf());
+        let source = Some(Arc::new(Folder::new(folder)) as Arc<dyn Files>);
         let own = Some(path.to_path_buf());
         Document::read(
-            &file_name, own, text, language, root, limits, budget, assets,
+            &file_name, own, text, language, source, limits, budget, assets,
         )
     }
 
-    /// A scene from its text. `root` is the folder that it may load files from, if any.
+    /// A scene from its text. `files` are those that it may load, if any.
     ///
     /// # Errors
     /// What is wrong with the text, with the place and what to do.
@@ -85,11 +88,11 @@ impl Document {
         name: &str,
         text: &str,
         language: Language,
-        root: Option<&Path>,
+        files: Option<Arc<dyn Files>>,
         limits: &Limits,
         assets: &Assets,
     ) -> Result<Document, Failed> {
-        let mut budget = Budget::new(limits);
+        let mut budget = LoadBudget::new(limits);
         let length = text.len() as u64;
         let room = if length > limits.file_bytes {
             let most = limits.file_bytes;
@@ -103,8 +106,8 @@ impl Document {
             report: Report::new(message).in_file(name).into(),
             files: Vec::new(),
         })?;
-        let (text, root) = (text.to_string(), root.map(Path::to_path_buf));
-        Document::read(name, None, text, language, root, limits, budget, assets)
+        let text = text.to_string();
+        Document::read(name, None, text, language, files, limits, budget, assets)
     }
 
     #[allow(clippy::too_many_arguments, reason = "one call of each way to begin")]
@@ -113,13 +116,13 @@ impl Document {
         path: Option<PathBuf>,
         text: String,
         language: Language,
-        root: Option<PathBuf>,
+        source: Option<Arc<dyn Files>>,
         limits: &Limits,
-        budget: Budget,
+        budget: LoadBudget,
         assets: &Assets,
     ) -> Result<Document, Failed> {
         let text = without_mark(text);
-        let files = Files::new(root, limits.files.saturating_sub(1), budget, assets);
+        let files = Reading::new(source, limits.files.saturating_sub(1), budget, assets);
         let read = || match language {
             Language::Starlark => starlark(name, text, files, limits),
             Language::Json => Ok((Body::Json(Source::new(name, &text)), files)),
@@ -240,9 +243,9 @@ fn without_mark(text: String) -> String {
 fn starlark(
     name: &str,
     text: String,
-    files: Files,
+    files: Reading,
     limits: &Limits,
-) -> Result<(Body, Files), Failed> {
+) -> Result<(Body, Reading), Failed> {
     let mut loader = Loader {
         files,
         sources: Vec::new(),
@@ -294,7 +297,7 @@ fn finish(
 
 /// Parses a file and all that it loads.
 struct Loader {
-    files: Files,
+    files: Reading,
     sources: Vec<Source>,
     modules: Vec<Module>,
     /// Modules by where their files really are; `None` while one is being loaded.
@@ -329,7 +332,7 @@ impl Loader {
     /// The number of a module that a `load` names.
     fn loaded(&mut self, path: &str) -> Run<u32> {
         let wrong = |e: files::FileError| mistake(e.to_string());
-        let name = Files::normal(path).map_err(wrong)?;
+        let name = Reading::normal(path).map_err(wrong)?;
         if !name.ends_with(".star") {
             return Err(mistake(format!("\"{path}\" does not end in .star"))
                 .help("only scene files can be loaded"));

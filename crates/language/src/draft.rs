@@ -1,6 +1,6 @@
 //! What a scene file declares while it runs, and the scene that it becomes.
 
-use crate::files::Files;
+use crate::files::Reading;
 use crate::framing;
 use crate::json::valid;
 use crate::limits::Limits;
@@ -18,7 +18,7 @@ use zeroset_scene::settings::{Settings, Shading, Shadow};
 
 /// A camera as far as the file states it.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct View {
+pub(crate) struct CameraDraft {
     pub(crate) eye: Option<DVec3>,
     pub(crate) target: Option<DVec3>,
     pub(crate) up: DVec3,
@@ -37,10 +37,10 @@ pub(crate) struct View {
 /// Vertical field of view where a file states none, degrees.
 pub(crate) const FOV: f64 = 40.0;
 
-impl Default for View {
+impl Default for CameraDraft {
     fn default() -> Self {
         let (near, far) = (0.0, None);
-        View {
+        CameraDraft {
             eye: None,
             target: None,
             up: DVec3::Y,
@@ -63,7 +63,7 @@ pub(crate) struct Draft {
     pub(crate) objects: Vec<Object>,
     pub(crate) materials: Vec<Material>,
     numbers: HashMap<String, u16>,
-    pub(crate) view: Option<View>,
+    pub(crate) view: Option<CameraDraft>,
     /// Absent as long as nothing is said of lights.
     pub(crate) lights: Option<Vec<Light>>,
     pub(crate) sky: Option<Sky>,
@@ -74,7 +74,7 @@ pub(crate) struct Draft {
     pub(crate) overrides: BTreeMap<String, String>,
     pub(crate) time: f64,
     pub(crate) animated: bool,
-    pub(crate) files: Files,
+    pub(crate) files: Reading,
     pub(crate) log: Vec<String>,
     pub(crate) warnings: Vec<Report>,
     size: Option<[u32; 2]>,
@@ -86,7 +86,7 @@ const LOG: usize = 1000;
 const LOG_LINE: usize = 2000;
 
 impl Draft {
-    pub(crate) fn new(options: &Options, files: Files, sources: Vec<Source>) -> Draft {
+    pub(crate) fn new(options: &Options, files: Reading, sources: Vec<Source>) -> Draft {
         Draft {
             sources,
             objects: Vec::new(),
@@ -253,7 +253,7 @@ fn key_light(shading: Shading) -> Light {
     }
 }
 
-impl View {
+impl CameraDraft {
     pub(crate) fn lens(&self) -> Lens {
         match self.height {
             Some(height) => Lens::Orthographic {

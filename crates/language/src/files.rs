@@ -1,14 +1,111 @@
-//! Files of a scene: only those below its own folder, and only ordinary ones of a limited size.
+//! Files of a scene: only those below its own folder, and only ordinary ones of a limited size. Where they come from is a [`Files`]: a
+//! folder of the system, or what a program holds in memory, as a page of a browser does.
 
 use crate::assets::Assets;
-use crate::budget::{Budget, Spent};
+use crate::budget::{LoadBudget, Spent};
 use crate::images;
-use std::collections::{HashMap, HashSet};
-use std::fs;
-use std::io::Read;
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::io::{self, Cursor, Read};
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 use zeroset_scene::material::Image;
+
+/// Where a scene's files come from. Names are paths below it, with `/` between their parts and without detours.
+pub trait Files: Send + Sync + std::fmt::Debug {
+    /// What a file is called outside: that path is shown as one that the scene depends on, whether or not there is such a file.
+    fn path(&self, name: &str) -> PathBuf;
+
+    /// Where the file of a name really is: one place for one file, under whatever names.
+    ///
+    /// # Errors
+    /// There is no such file that the scene may see.
+    fn locate(&self, name: &str) -> Result<PathBuf, NoFile>;
+
+    /// The file at a place that was located.
+    ///
+    /// # Errors
+    /// It is no ordinary file, or cannot be read.
+    fn open(&self, place: &Path) -> Result<Opened, NoFile>;
+}
+
+/// A file that can be read.
+pub struct Opened {
+    /// Its length in bytes, as far as that is known before it was read.
+    pub length: u64,
+    /// What it holds.
+    pub bytes: Box<dyn Read>,
+}
+
+/// Why there is no file.
+#[derive(Debug, thiserror::Error)]
+pub enum NoFile {
+    /// It is outside of what the scene may see.
+    #[error("it is outside of the scene's folder")]
+    Outside,
+    /// It is a folder, a pipe or a device.
+    #[error("it is not an ordinary file")]
+    Special,
+    /// The system says so.
+    #[error(transparent)]
+    Io(#[from] io::Error),
+}
+
+/// Files in memory, by their names.
+///
+/// ```
+/// use std::sync::Arc;
+/// use zeroset_language::assets::Assets;
+/// use zeroset_language::document::Document;
+/// use zeroset_language::files::InMemory;
+/// use zeroset_language::limits::Limits;
+/// use zeroset_language::load::{Language, Options};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let files = InMemory::new([("parts/ball.star", "def ball(r):\n    return sphere(r)\n")]);
+/// let text = "load(\"parts/ball.star\", \"ball\")\nshow(ball(2))";
+/// let (limits, assets) = (Limits::default(), Assets::default());
+/// let files = Some(Arc::new(files) as _);
+/// let mut document = Document::of_text("scene.star", text, Language::Starlark, files, &limits, &assets)?;
+/// let scene = document.scene(&Options::default())?.scene;
+/// assert_eq!(scene.objects()[0].field.facts().bounds.max, [2.0; 3]);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct InMemory(BTreeMap<String, Arc<[u8]>>);
+
+impl InMemory {
+    /// Files with these names and contents.
+    pub fn new<N: Into<String>, C: AsRef<[u8]>>(
+        files: impl IntoIterator<Item = (N, C)>,
+    ) -> InMemory {
+        let file = |(name, content): (N, C)| (name.into(), content.as_ref().into());
+        InMemory(files.into_iter().map(file).collect())
+    }
+}
+
+impl Files for InMemory {
+    fn path(&self, name: &str) -> PathBuf {
+        PathBuf::from(name)
+    }
+
+    fn locate(&self, name: &str) -> Result<PathBuf, NoFile> {
+        if self.0.contains_key(name) {
+            Ok(PathBuf::from(name))
+        } else {
+            Err(io::Error::from(io::ErrorKind::NotFound).into())
+        }
+    }
+
+    fn open(&self, place: &Path) -> Result<Opened, NoFile> {
+        let name = place.to_str().unwrap_or_default();
+        let bytes = (self.0.get(name)).ok_or_else(|| io::Error::from(io::ErrorKind::NotFound))?;
+        Ok(Opened {
+            length: bytes.len() as u64,
+            bytes: Box::new(Cursor::new(bytes.clone())),
+        })
+    }
+}
 
 /// Why a file cannot be loaded.
 #[derive(Debug, thiserror::Error)]
@@ -48,15 +145,15 @@ pub(crate) enum FileError {
     Many(u64),
 }
 
-/// A folder that files are read from, and what was read.
+/// Files as one document reads them: limited, charged, each of them once.
 #[derive(Debug)]
-pub(crate) struct Files {
-    /// Absent for a scene in memory.
-    root: Option<PathBuf>,
+pub(crate) struct Reading {
+    /// Absent for a scene without any.
+    source: Option<Arc<dyn Files>>,
     loaded: Vec<PathBuf>,
     limit: u64,
     /// What loading may still take.
-    pub(crate) budget: Budget,
+    pub(crate) budget: LoadBudget,
     pub(crate) cache: Cache,
     /// Images that are charged already.
     charged: HashSet<PathBuf>,
@@ -73,14 +170,19 @@ pub(crate) struct Cache {
     pub(crate) assets: Assets,
 }
 
-impl Files {
-    pub(crate) fn new(root: Option<PathBuf>, limit: u64, budget: Budget, assets: &Assets) -> Files {
+impl Reading {
+    pub(crate) fn new(
+        source: Option<Arc<dyn Files>>,
+        limit: u64,
+        budget: LoadBudget,
+        assets: &Assets,
+    ) -> Reading {
         let cache = Cache {
             assets: assets.clone(),
             ..Cache::default()
         };
-        Files {
-            root,
+        Reading {
+            source,
             loaded: Vec::new(),
             limit,
             budget,
@@ -89,10 +191,10 @@ impl Files {
         }
     }
 
-    /// The same folder, where these files were asked for and this was read before.
-    pub(crate) fn again(&self, limit: u64, budget: Budget, cache: Cache) -> Files {
-        Files {
-            root: self.root.clone(),
+    /// The same files, where these files were asked for and this was read before.
+    pub(crate) fn again(&self, limit: u64, budget: LoadBudget, cache: Cache) -> Reading {
+        Reading {
+            source: self.source.clone(),
             loaded: self.loaded.clone(),
             limit,
             budget,
@@ -133,12 +235,9 @@ impl Files {
 
     /// Where a file below the folder really is, behind all links.
     pub(crate) fn find(&mut self, name: &str) -> Result<PathBuf, FileError> {
-        let normal = Files::normal(name)?;
-        let root = self
-            .root
-            .clone()
-            .ok_or_else(|| FileError::NoFolder(name.to_string()))?;
-        let path = root.join(&normal);
+        let normal = Reading::normal(name)?;
+        let source = self.source(name)?;
+        let path = source.path(&normal);
         if !self.loaded.contains(&path) {
             if self.loaded.len() as u64 >= self.limit {
                 return Err(FileError::Many(self.limit));
@@ -148,19 +247,31 @@ impl Files {
         if let Some(real) = self.cache.places.get(&path) {
             return Ok(real.clone());
         }
-        // a link may point out of the folder: what counts is where the path ends
-        let missing = |e: std::io::Error| unreadable(name, &e);
-        let real = fs::canonicalize(&path).map_err(missing)?;
-        if !real.starts_with(fs::canonicalize(&root).map_err(missing)?) {
-            return Err(FileError::Outside(name.to_string()));
-        }
+        let real = source.locate(&normal).map_err(|e| no_file(name, e))?;
         self.cache.places.insert(path, real.clone());
         Ok(real)
     }
 
+    fn source(&self, name: &str) -> Result<Arc<dyn Files>, FileError> {
+        (self.source.clone()).ok_or_else(|| FileError::NoFolder(name.to_string()))
+    }
+
     /// Where a file really is that was read already, as the scene's own was.
     pub(crate) fn real(&self, name: &str) -> Option<PathBuf> {
-        fs::canonicalize(self.root.as_ref()?.join(name)).ok()
+        self.source.as_ref()?.locate(name).ok()
+    }
+
+    /// The bytes of the file at a place that was found, charged before they are read.
+    pub(crate) fn read_at(
+        &self,
+        real: &Path,
+        name: &str,
+        limit: u64,
+        flag: &'static str,
+        budget: &mut LoadBudget,
+    ) -> Result<Vec<u8>, FileError> {
+        let opened = self.source(name)?.open(real);
+        read_whole(opened, name, limit, flag, budget)
     }
 
     /// The bytes of a file below the folder. They are read once and kept.
@@ -180,7 +291,9 @@ impl Files {
             return Ok(bytes);
         }
         self.budget.check_clock()?;
-        let bytes = read_ordinary(&real, name, limit, flag, &mut self.budget)?;
+        let mut budget = self.budget;
+        let bytes = self.read_at(&real, name, limit, flag, &mut budget)?;
+        self.budget = budget;
         // the bytes as they were read and as they are kept
         let twice = 2 * bytes.len() as u64;
         self.budget.borrow(twice, || format!("\"{name}\""))?;
@@ -198,7 +311,9 @@ impl Files {
         limit: u64,
     ) -> Result<String, FileError> {
         self.budget.check_clock()?;
-        let bytes = read_ordinary(real, name, limit, "file_bytes", &mut self.budget)?;
+        let mut budget = self.budget;
+        let bytes = self.read_at(real, name, limit, "file_bytes", &mut budget)?;
+        self.budget = budget;
         text(bytes, name)
     }
 
@@ -206,7 +321,7 @@ impl Files {
     pub(crate) fn image(
         &mut self,
         name: &str,
-        read: impl FnOnce(&mut Files, &Path) -> Result<Arc<Image>, String>,
+        read: impl FnOnce(&mut Reading, &Path) -> Result<Arc<Image>, String>,
     ) -> Result<Arc<Image>, String> {
         let real = self.find(name).map_err(|e| e.to_string())?;
         self.budget.check_clock().map_err(|e| e.to_string())?;
@@ -239,9 +354,18 @@ pub(crate) fn text(bytes: Vec<u8>, name: &str) -> Result<String, FileError> {
     })
 }
 
+/// Why there is no file of a name.
+fn no_file(name: &str, error: NoFile) -> FileError {
+    match error {
+        NoFile::Outside => FileError::Outside(name.to_string()),
+        NoFile::Special => FileError::Special(name.to_string()),
+        NoFile::Io(e) => unreadable(name, &e),
+    }
+}
+
 /// Why the system does not give a file.
-fn unreadable(name: &str, error: &std::io::Error) -> FileError {
-    use std::io::ErrorKind::{NotADirectory, NotFound};
+fn unreadable(name: &str, error: &io::Error) -> FileError {
+    use io::ErrorKind::{NotADirectory, NotFound};
     match error.kind() {
         NotFound | NotADirectory => FileError::Missing(name.to_string()),
         _ => FileError::Unreadable {
@@ -251,42 +375,33 @@ fn unreadable(name: &str, error: &std::io::Error) -> FileError {
     }
 }
 
-/// The bytes of an ordinary file, charged before they are read. A pipe or a device is never opened, as that could wait for
-/// ever.
-pub(crate) fn read_ordinary(
-    path: &Path,
+/// The bytes of a file, charged before they are read.
+pub(crate) fn read_whole(
+    opened: Result<Opened, NoFile>,
     name: &str,
     limit: u64,
     flag: &'static str,
-    budget: &mut Budget,
+    budget: &mut LoadBudget,
 ) -> Result<Vec<u8>, FileError> {
-    let failed = |e: std::io::Error| unreadable(name, &e);
+    let mut file = opened.map_err(|e| no_file(name, e))?;
     let large = |bytes| FileError::Large {
         name: name.to_string(),
         bytes,
         limit,
         flag,
     };
-    let about = fs::metadata(path).map_err(failed)?;
-    if !about.is_file() {
-        return Err(FileError::Special(name.to_string()));
+    if file.length > limit {
+        return Err(large(file.length));
     }
-    if about.len() > limit {
-        return Err(large(about.len()));
-    }
-    budget.hold(about.len(), || format!("\"{name}\""))?;
-    let mut file = fs::File::open(path).map_err(failed)?;
-    // it may have become something else, or have grown, since
-    if !file.metadata().map_err(failed)?.is_file() {
-        return Err(FileError::Special(name.to_string()));
-    }
-    let mut bytes = Vec::with_capacity(about.len() as usize);
-    let mut taken = about.len();
+    budget.hold(file.length, || format!("\"{name}\""))?;
+    let mut bytes = Vec::with_capacity(file.length as usize);
+    let mut taken = file.length;
     loop {
-        let more = (&mut file)
+        // it may have grown since
+        let more = (&mut file.bytes)
             .take(PIECE)
             .read_to_end(&mut bytes)
-            .map_err(failed)?;
+            .map_err(|e| unreadable(name, &e))?;
         if more == 0 {
             return Ok(bytes);
         }

@@ -1,6 +1,6 @@
 //! Where the camera stands when a scene does not say so.
 
-use crate::draft::{View, camera_with};
+use crate::draft::{CameraDraft, camera_with};
 use glam::{DMat3, DVec3};
 use zeroset_catalogue::bounds::Aabb;
 use zeroset_scene::camera::Camera;
@@ -15,7 +15,7 @@ const FAR: f64 = 200.0;
 
 /// The camera of a view; what the view leaves out follows from what is to be seen. Depends on nothing else.
 pub(crate) fn camera(
-    view: &View,
+    view: &CameraDraft,
     bounds: impl Iterator<Item = Aabb>,
     size: [u32; 2],
 ) -> Result<Camera, String> {
@@ -109,7 +109,7 @@ mod tests {
                 ball([5.0, -2.0, 9.0], 30.0),
                 Aabb::new([0.0; 3], [8.0, 0.1, 0.1]),
             ] {
-                let camera = camera(&View::default(), [bounds].into_iter(), size).unwrap();
+                let camera = camera(&CameraDraft::default(), [bounds].into_iter(), size).unwrap();
                 for p in bounds.corners() {
                     let p = DVec3::from(p).as_vec3() - camera.eye;
                     let local = camera.axes.transpose() * p;
@@ -134,31 +134,31 @@ mod tests {
             ..Aabb::WHOLE
         };
         let one = camera(
-            &View::default(),
+            &CameraDraft::default(),
             [ball([0.0; 3], 1.0)].into_iter(),
             [64, 64],
         )
         .unwrap();
         let two = camera(
-            &View::default(),
+            &CameraDraft::default(),
             [floor, ball([0.0; 3], 1.0), Aabb::EMPTY].into_iter(),
             [64, 64],
         )
         .unwrap();
         assert_eq!(one, two);
-        assert!(camera(&View::default(), [floor].into_iter(), [64, 64]).is_ok());
+        assert!(camera(&CameraDraft::default(), [floor].into_iter(), [64, 64]).is_ok());
     }
 
     #[test]
     fn keeps_what_is_stated() {
-        let view = View {
+        let view = CameraDraft {
             eye: Some(DVec3::new(0.0, 5.0, 0.0)),
             target: Some(DVec3::ZERO),
-            ..View::default()
+            ..CameraDraft::default()
         };
         let camera = camera(&view, [ball([0.0; 3], 1.0)].into_iter(), [64, 64]).unwrap();
         assert_eq!(camera.eye, glam::Vec3::new(0.0, 5.0, 0.0));
-        let view = View {
+        let view = CameraDraft {
             target: view.eye,
             ..view
         };

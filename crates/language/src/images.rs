@@ -1,7 +1,7 @@
 //! Images that surfaces show: PNG and JPEG.
 
-use crate::budget::Budget;
-use crate::files::{Files, read_ordinary};
+use crate::budget::LoadBudget;
+use crate::files::Reading;
 use crate::limits::Limits;
 use glam::Vec3;
 use std::io::Cursor;
@@ -18,21 +18,27 @@ use zune_jpeg::JpegDecoder;
 ///
 /// # Errors
 /// What is wrong with it, and what is allowed.
-pub(crate) fn load(files: &mut Files, name: &str, limits: &Limits) -> Result<Arc<Image>, String> {
+pub(crate) fn load(files: &mut Reading, name: &str, limits: &Limits) -> Result<Arc<Image>, String> {
     files.image(name, |files, real| read(files, real, name, limits))
 }
 
-fn read(files: &mut Files, real: &Path, name: &str, limits: &Limits) -> Result<Arc<Image>, String> {
+fn read(
+    files: &mut Reading,
+    real: &Path,
+    name: &str,
+    limits: &Limits,
+) -> Result<Arc<Image>, String> {
     let text = |e: &dyn std::fmt::Display| e.to_string();
     // the file's own bytes are given back at the end
     let mut budget = files.budget;
-    let bytes = read_ordinary(real, name, limits.image_bytes, "image_bytes", &mut budget)
+    let bytes = files
+        .read_at(real, name, limits.image_bytes, "image_bytes", &mut budget)
         .map_err(|e| text(&e))?;
-    let room = Room {
+    let room = ImageLimits {
         name,
         most: limits.image_pixels,
     };
-    let path = Files::normal(name).map_err(|e| text(&e))?;
+    let path = Reading::normal(name).map_err(|e| text(&e))?;
     files.cache.assets.image(&path, &bytes, || {
         let decoded = if bytes.starts_with(b"\x89PNG") {
             png(&bytes, &room, &mut budget)?
@@ -57,19 +63,19 @@ pub(crate) fn what(name: &str, [width, height]: [u32; 2]) -> String {
 }
 
 /// What an image may be, and how it is called in messages.
-struct Room<'a> {
+struct ImageLimits<'a> {
     name: &'a str,
     /// Pixels.
     most: u64,
 }
 
-impl Room<'_> {
+impl ImageLimits<'_> {
     fn bad(&self, e: &dyn std::fmt::Display) -> String {
         format!("\"{}\" is no image that can be read: {e}", self.name)
     }
 
     /// Charges what decoding takes: the file's pixels, as much again for the decoder, and the linear colours.
-    fn charge(&self, size: [u32; 2], decoded: u64, budget: &mut Budget) -> Result<(), String> {
+    fn charge(&self, size: [u32; 2], decoded: u64, budget: &mut LoadBudget) -> Result<(), String> {
         let [width, height] = size;
         let pixels = u64::from(width) * u64::from(height);
         if pixels == 0 || pixels > self.most {
@@ -100,7 +106,7 @@ struct Decoded {
     wide: bool,
 }
 
-fn png(bytes: &[u8], room: &Room<'_>, budget: &mut Budget) -> Result<Decoded, String> {
+fn png(bytes: &[u8], room: &ImageLimits<'_>, budget: &mut LoadBudget) -> Result<Decoded, String> {
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
     decoder.set_transformations(png::Transformations::EXPAND);
     decoder.set_ignore_text_chunk(true);
@@ -127,7 +133,7 @@ fn png(bytes: &[u8], room: &Room<'_>, budget: &mut Budget) -> Result<Decoded, St
     })
 }
 
-fn jpeg(bytes: &[u8], room: &Room<'_>, budget: &mut Budget) -> Result<Decoded, String> {
+fn jpeg(bytes: &[u8], room: &ImageLimits<'_>, budget: &mut LoadBudget) -> Result<Decoded, String> {
     let options = DecoderOptions::default()
         .set_strict_mode(false)
         .set_max_width(usize::from(u16::MAX))

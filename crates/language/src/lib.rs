@@ -31,8 +31,9 @@ mod budget;
 pub mod colour;
 pub mod document;
 mod draft;
+pub mod files;
 #[allow(clippy::disallowed_methods, reason = "the room that reads files")]
-mod files;
+pub mod folder;
 pub mod framing;
 mod images;
 pub mod json;

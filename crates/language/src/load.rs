@@ -2,10 +2,13 @@
 
 use crate::assets::Assets;
 use crate::document::Document;
+use crate::files::Files;
+use crate::folder::Folder;
 use crate::limits::Limits;
 use crate::report::Report;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use zeroset_scene::scene::Scene;
 
 /// What is given beside the file.
@@ -133,6 +136,7 @@ pub fn load_text(
     root: Option<&Path>,
     options: &Options,
 ) -> Result<Loaded, Failed> {
-    let assets = Assets::default();
-    Document::of_text(name, text, language, root, &options.limits, &assets)?.scene(options)
+    let (limits, assets) = (&options.limits, Assets::default());
+    let files = root.map(|root| Arc::new(Folder::new(root)) as Arc<dyn Files>);
+    Document::of_text(name, text, language, files, limits, &assets)?.scene(options)
 }

@@ -1,6 +1,6 @@
 //! What the syntax tree of a script takes, before there is one.
 
-use crate::budget::{Budget, Spent};
+use crate::budget::{LoadBudget, Spent};
 use starlark_syntax::codemap::CodeMap;
 use starlark_syntax::dialect::Dialect;
 use starlark_syntax::lexer::{Lexer, Token};
@@ -14,7 +14,7 @@ const COPIES: u64 = 3;
 const CLOCK: u64 = 4096;
 
 /// Charges the syntax tree of a text, an upper bound that follows from its words and signs.
-pub(crate) fn charge(name: &str, text: &str, budget: &mut Budget) -> Result<(), Spent> {
+pub(crate) fn charge(name: &str, text: &str, budget: &mut LoadBudget) -> Result<(), Spent> {
     let what = || format!("what \"{name}\" says");
     budget.hold(COPIES * text.len() as u64, what)?;
     let dialect = Dialect {

@@ -430,8 +430,8 @@ where
     #[inline(always)]
     fn norm<const N: usize>(v: [Self; N]) -> Self {
         let mut values = [v[0].v; N];
-        for (value, component) in values.iter_mut().zip(&v) {
-            *value = component.v;
+        for k in 0..N {
+            values[k] = v[k].v;
         }
         let r = R::norm(values);
         let mut d = times(v[0].d, values[0].unit(r));

@@ -8,13 +8,13 @@
 //! - [`compare`]: how different two pictures are.
 //!
 //! ```
-//! use zeroset_output::format::{Notes, png};
+//! use zeroset_output::format::{Metadata, png};
 //! use zeroset_output::picture::Picture;
 //!
 //! // sRGB-coded colours, 0 to 1, from column and row
 //! let picture = Picture::from_fn(16, 8, |x, y| [x as f32 / 15.0, y as f32 / 7.0, 0.5]);
 //! let mut bytes = Vec::new();
-//! png::write(&mut bytes, &picture, png::Depth::Eight, &Notes::new("colours"))?;
+//! png::write(&mut bytes, &picture, png::Depth::Eight, &Metadata::new("colours"))?;
 //! assert!(bytes.starts_with(b"\x89PNG"));
 //! # Ok::<(), std::io::Error>(())
 //! ```

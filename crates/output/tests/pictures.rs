@@ -6,9 +6,9 @@ use std::path::Path;
 use zeroset_output::atomic::write_atomically;
 use zeroset_output::format::png::Depth;
 use zeroset_output::format::read::{ReadError, ReadFailure, read};
-use zeroset_output::format::{Notes, exr, png};
+use zeroset_output::format::{Metadata, exr, png};
 use zeroset_output::picture::Picture;
-use zeroset_output::view::{NOTHING, View};
+use zeroset_output::view::{NOTHING, PlaneView};
 use zeroset_scene::film::{Film, Plane};
 
 /// A film whose every number is known: hits in the left half.
@@ -69,7 +69,7 @@ fn png_keeps_the_picture_to_its_depth() {
         (Depth::Sixteen, 0.51 / 65535.0),
     ] {
         let back = saved("a.png", |w| {
-            png::write(w, &picture, depth, &Notes::default())
+            png::write(w, &picture, depth, &Metadata::default())
         })
         .unwrap();
         assert!(largest_difference(&picture, &back) <= error, "{depth:?}");
@@ -80,7 +80,7 @@ fn png_keeps_the_picture_to_its_depth() {
 fn exr_keeps_every_number_of_every_plane() {
     use ::exr::prelude::{ReadChannels, ReadLayers};
     let film = film(37, 23);
-    let notes = Notes::new("größe").with("Settings", "{}");
+    let notes = Metadata::new("größe").with("Settings", "{}");
     let mut bytes = Cursor::new(Vec::new());
     exr::write(&mut bytes, &film, &notes).unwrap();
     bytes.set_position(0);
@@ -137,7 +137,7 @@ fn exr_keeps_every_number_of_every_plane() {
 
 #[test]
 fn notes_are_in_the_file_and_name_no_place() {
-    let notes = Notes::new("/home/me/secret/Größe.star")
+    let notes = Metadata::new("/home/me/secret/Größe.star")
         .with("Settings", "{\"a\":1}")
         .with("Parameters", "naïve=1");
     let mut bytes = Vec::new();
@@ -183,7 +183,7 @@ fn equal_pictures_are_equal_files() {
             &mut bytes,
             &Picture::develop(&film(50, 20), 0.0),
             Depth::Eight,
-            &Notes::new("a"),
+            &Metadata::new("a"),
         )
         .unwrap();
         bytes
@@ -196,7 +196,7 @@ fn slow_gradients_show_no_bands() {
     // a sky that grows by 2 levels over 400 rows: without dithering, every row would be of one value
     let sky = Picture::from_fn(64, 400, |_, y| [0.5 + y as f32 / 400.0 * 2.0 / 255.0; 3]);
     let back = saved("a.png", |w| {
-        png::write(w, &sky, Depth::Eight, &Notes::default())
+        png::write(w, &sky, Depth::Eight, &Metadata::default())
     })
     .unwrap();
     for y in 0..384 {
@@ -236,7 +236,7 @@ fn what_is_no_picture_is_refused() {
         &mut bytes,
         &Picture::filled(40, 40, [0.3; 3]),
         Depth::Eight,
-        &Notes::default(),
+        &Metadata::default(),
     )
     .unwrap();
     assert!(matches!(
@@ -244,7 +244,7 @@ fn what_is_no_picture_is_refused() {
         ReadFailure::Damaged(_)
     ));
     let mut bytes = Cursor::new(Vec::new());
-    exr::write(&mut bytes, &film(40, 40), &Notes::default()).unwrap();
+    exr::write(&mut bytes, &film(40, 40), &Metadata::default()).unwrap();
     let bytes = bytes.into_inner();
     assert!(matches!(
         refused(&bytes[..bytes.len() / 2]),
@@ -320,7 +320,7 @@ fn views_show_their_plane() {
         .map(String::from)
         .to_vec();
     for plane in Plane::ALL {
-        let mut view = View {
+        let mut view = PlaneView {
             plane,
             exposure: 0.0,
             legend: false,
@@ -356,7 +356,7 @@ fn views_show_their_plane() {
             "{plane:?}"
         );
     }
-    let objects = View {
+    let objects = PlaneView {
         plane: Plane::Object,
         exposure: 0.0,
         legend: false,
@@ -365,7 +365,7 @@ fn views_show_their_plane() {
     .of(&film);
     let colour = |x| objects.pixel(x, 0).unwrap();
     assert!(colour(0) != colour(1) && colour(1) != colour(2) && colour(0) == colour(3));
-    let normal = View {
+    let normal = PlaneView {
         plane: Plane::Normal,
         exposure: 0.0,
         legend: false,
@@ -382,9 +382,9 @@ proptest! {
     fn no_bytes_make_the_reader_panic(exr in any::<bool>(), at in 0usize..400, with in any::<u8>(), cut in 0usize..2000) {
         let mut bytes = Cursor::new(Vec::new());
         if exr {
-            exr::write(&mut bytes, &film(8, 8), &Notes::default()).unwrap();
+            exr::write(&mut bytes, &film(8, 8), &Metadata::default()).unwrap();
         } else {
-            png::write(&mut bytes, &Picture::filled(8, 8, [0.3; 3]), Depth::Eight, &Notes::default()).unwrap();
+            png::write(&mut bytes, &Picture::filled(8, 8, [0.3; 3]), Depth::Eight, &Metadata::default()).unwrap();
         }
         let mut bytes = bytes.into_inner();
         let at = at % bytes.len();
@@ -399,7 +399,7 @@ proptest! {
         for (i, x) in film.plane_mut(Plane::ALL[plane]).iter_mut().enumerate() {
             *x = numbers[i % 64];
         }
-        let view = View { plane: Plane::ALL[plane], exposure: 1.0, legend: true, objects: &["a".to_owned()] };
+        let view = PlaneView { plane: Plane::ALL[plane], exposure: 1.0, legend: true, objects: &["a".to_owned()] };
         let picture = view.of(&film);
         prop_assert!(picture.pixels().as_flattened().iter().all(|c| (0.0..=1.0).contains(c)));
     }
@@ -439,7 +439,7 @@ fn files_tell_how_far_they_are_and_end_when_they_are_not_wanted() {
                 done: AtomicU64::new(0),
                 most,
             };
-            let notes = Notes::default();
+            let notes = Metadata::default();
             let written = write_atomically(&path, |writer| match name {
                 "png" => png::write_watched(writer, &picture, Depth::Sixteen, &notes, &watcher),
                 _ => exr::write_watched(writer, &film, &notes, &watcher),

@@ -270,7 +270,9 @@ impl Accumulator {
                     let mut colour = take(Sum::Colour);
                     for (pixel, w) in colour.as_chunks_mut::<3>().0.iter_mut().zip(&weight) {
                         // the filter's negative lobes can make a dark pixel beside a bright one less than black
-                        *pixel = pixel.map(|c| (c / w.max(1e-6)).max(0.0));
+                        for c in pixel {
+                            *c = (*c / w.max(1e-6)).max(0.0);
+                        }
                     }
                     colour
                 }
@@ -286,14 +288,18 @@ impl Accumulator {
                     let mut normal = take(Sum::Normal);
                     for n in normal.as_chunks_mut::<3>().0 {
                         let length = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
-                        *n = n.map(|x| x / length.max(f32::MIN_POSITIVE));
+                        for x in n {
+                            *x /= length.max(f32::MIN_POSITIVE);
+                        }
                     }
                     normal
                 }
                 Plane::Albedo => {
                     let mut albedo = take(Sum::Albedo);
                     for (pixel, n) in albedo.as_chunks_mut::<3>().0.iter_mut().zip(&hits) {
-                        *pixel = pixel.map(|x| x / n.max(1.0));
+                        for x in pixel {
+                            *x /= n.max(1.0);
+                        }
                     }
                     albedo
                 }

@@ -4,7 +4,7 @@
 mod fault;
 mod methods;
 
-pub use fault::{Fault, SceneError, Step};
+pub use fault::{Fault, PathStep, SceneError};
 pub use methods::{antialias, march, occlusion, shadow};
 
 use crate::camera::{Camera, Lens};
@@ -18,7 +18,7 @@ use methods::setting;
 use zeroset_catalogue::{Dimension, LARGE, SMALL};
 
 /// What a check says.
-pub type Check = Result<(), SceneError>;
+pub type Checked = Result<(), SceneError>;
 
 /// Largest coordinate of a light or a gradient.
 const FAR: f32 = 1e12;
@@ -38,7 +38,7 @@ pub const SAMPLES: u32 = 1 << 20;
 pub const PIXELS: u64 = 1 << 32;
 
 /// Everything.
-pub(crate) fn parts(scene: &SceneParts) -> Check {
+pub(crate) fn parts(scene: &SceneParts) -> Checked {
     if scene.objects.len() > OBJECTS {
         let fault = Fault::Objects {
             given: scene.objects.len(),
@@ -87,7 +87,7 @@ pub(crate) fn parts(scene: &SceneParts) -> Check {
 ///
 /// # Errors
 /// Too many.
-pub fn count_materials(given: usize) -> Check {
+pub fn count_materials(given: usize) -> Checked {
     count_of("materials", given, OBJECTS)
 }
 
@@ -95,11 +95,11 @@ pub fn count_materials(given: usize) -> Check {
 ///
 /// # Errors
 /// Too many.
-pub fn count_lights(given: usize) -> Check {
+pub fn count_lights(given: usize) -> Checked {
     count_of("lights", given, LIGHTS)
 }
 
-fn count_of(what: &'static str, given: usize, most: usize) -> Check {
+fn count_of(what: &'static str, given: usize, most: usize) -> Checked {
     if given <= most {
         return Ok(());
     }
@@ -110,7 +110,7 @@ fn count_of(what: &'static str, given: usize, most: usize) -> Check {
 ///
 /// # Errors
 /// What the size is.
-pub fn size([width, height]: [u32; 2]) -> Check {
+pub fn size([width, height]: [u32; 2]) -> Checked {
     if width > 0 && height > 0 && u64::from(width) * u64::from(height) <= PIXELS {
         return Ok(());
     }
@@ -121,7 +121,7 @@ pub fn size([width, height]: [u32; 2]) -> Check {
 ///
 /// # Errors
 /// Which number is wrong.
-pub fn camera(camera: &Camera) -> Check {
+pub fn camera(camera: &Camera) -> Checked {
     vector("eye", camera.eye, f32::MAX)?;
     let axes = camera.axes.as_dmat3();
     let error = axes * axes.transpose() - glam::DMat3::IDENTITY;
@@ -147,33 +147,33 @@ pub fn camera(camera: &Camera) -> Check {
     Err(SceneError::new(Fault::Range))
 }
 
-fn number(name: &'static str, value: f32, min: f32, max: f32) -> Check {
+fn number(name: &'static str, value: f32, min: f32, max: f32) -> Checked {
     if (min..=max).contains(&value) {
         return Ok(());
     }
     Err(SceneError::new(Fault::Number { value, min, max }).at(name))
 }
 
-fn count(name: &'static str, value: u32, min: u32, max: u32) -> Check {
+fn count(name: &'static str, value: u32, min: u32, max: u32) -> Checked {
     if (min..=max).contains(&value) {
         return Ok(());
     }
     Err(SceneError::new(Fault::Count { value, min, max }).at(name))
 }
 
-fn vector(name: &'static str, v: Vec3, max: f32) -> Check {
+fn vector(name: &'static str, v: Vec3, max: f32) -> Checked {
     v.to_array()
         .into_iter()
         .try_for_each(|x| number(name, x, -max, max))
 }
 
-fn colour(name: &'static str, v: Vec3) -> Check {
+fn colour(name: &'static str, v: Vec3) -> Checked {
     v.to_array()
         .into_iter()
         .try_for_each(|x| number(name, x, 0.0, BRIGHT))
 }
 
-fn direction(name: &'static str, value: Vec3) -> Check {
+fn direction(name: &'static str, value: Vec3) -> Checked {
     if value.is_finite() && (value.length() - 1.0).abs() < 1e-3 {
         return Ok(());
     }
@@ -184,7 +184,7 @@ fn direction(name: &'static str, value: Vec3) -> Check {
 ///
 /// # Errors
 /// Which number is wrong.
-pub fn material(material: &Material) -> Check {
+pub fn material(material: &Material) -> Checked {
     pattern(&material.pattern).map_err(|e| e.at("pattern"))?;
     number("specular", material.specular, 0.0, 10.0)?;
     number("shininess", material.shininess, 1.0, 1e4)?;
@@ -197,7 +197,7 @@ pub fn material(material: &Material) -> Check {
 ///
 /// # Errors
 /// What it has.
-pub fn image(image: &Image) -> Check {
+pub fn image(image: &Image) -> Checked {
     let (width, height, pixels) = (image.width, image.height, image.pixels.len());
     if width > 0 && height > 0 && u64::from(width) * u64::from(height) == pixels as u64 {
         return Ok(());
@@ -209,7 +209,7 @@ pub fn image(image: &Image) -> Check {
     }))
 }
 
-fn pattern(pattern: &Pattern) -> Check {
+fn pattern(pattern: &Pattern) -> Checked {
     let colours = |list: &[Vec3]| list.iter().try_for_each(|c| colour("colours", *c));
     let scale = |x: f32| number("size", x, SMALL as f32, LARGE as f32);
     match pattern {
@@ -261,7 +261,7 @@ fn pattern(pattern: &Pattern) -> Check {
 ///
 /// # Errors
 /// Which number is wrong.
-pub fn light(light: &Light) -> Check {
+pub fn light(light: &Light) -> Checked {
     match light.source {
         Source::Directional { direction: d } => {
             direction("direction", d).map_err(|e| e.at("source"))?
@@ -278,7 +278,7 @@ pub fn light(light: &Light) -> Check {
 ///
 /// # Errors
 /// Which number is wrong.
-pub fn sky(sky: &Sky) -> Check {
+pub fn sky(sky: &Sky) -> Checked {
     colour("top", sky.top)?;
     colour("horizon", sky.horizon)?;
     colour("bottom", sky.bottom)?;
@@ -289,7 +289,7 @@ pub fn sky(sky: &Sky) -> Check {
 ///
 /// # Errors
 /// Which number is wrong.
-pub fn settings(settings: &Settings, samples: u32) -> Check {
+pub fn settings(settings: &Settings, samples: u32) -> Checked {
     size(settings.size).map_err(|e| e.at("size"))?;
     march(&settings.march).map_err(|e| e.at("march"))?;
     setting(Settings::MAX_STEPS, Whole(settings.max_steps))?;

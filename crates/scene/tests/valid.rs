@@ -9,7 +9,7 @@ use zeroset_scene::light::{Light, Source};
 use zeroset_scene::material::{Image, Material, Pattern};
 use zeroset_scene::scene::{Object, Scene, SceneParts};
 use zeroset_scene::settings::{Antialias, March, Occlusion, Settings, Shadow};
-use zeroset_scene::valid::{Fault, LIGHTS, SceneError, Step};
+use zeroset_scene::valid::{Fault, LIGHTS, PathStep, SceneError};
 
 fn shape(name: &str) -> Field {
     let entry = catalogue().primitive(name).expect("in the catalogue");
@@ -81,7 +81,10 @@ fn a_picture_has_pixels() {
         let error = refused(|s| s.settings.size = size);
         let [width, height] = size;
         assert_eq!(error.fault(), &Fault::Size { width, height });
-        assert_eq!(error.path(), [Step::Key("settings"), Step::Key("size")]);
+        assert_eq!(
+            error.path(),
+            [PathStep::Key("settings"), PathStep::Key("size")]
+        );
         let scene = Scene::new(parts()).expect("a scene");
         assert_eq!(scene.clone().with_size(size).err(), Some(error.clone()));
         let settings = Settings {

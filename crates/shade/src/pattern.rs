@@ -139,15 +139,13 @@ pub fn gradient<R: Real>(
 /// Colours by the orbit of a fractal: the nearer a trap, the more its colour counts.
 #[inline(always)]
 pub fn orbit<R: Real>(at: &Place<R>, colours: [Vec3<R::Scalar>; 4]) -> Vec3<R> {
-    let weights = at.orbit.map(
-        #[inline(always)]
-        |t| (t.sq() + TRAP * TRAP).recip(),
-    );
+    let mut weights = at.orbit;
+    for weight in &mut weights {
+        *weight = (weight.sq() + TRAP * TRAP).recip();
+    }
     let total = weights[0] + weights[1] + weights[2] + weights[3];
-    let [a, b, c, d] = colours.map(
-        #[inline(always)]
-        |colour| colour.array(),
-    );
+    let [a, b, c, d] = colours;
+    let (a, b, c, d) = (a.array(), b.array(), c.array(), d.array());
     each(
         #[inline(always)]
         |k| {

@@ -33,18 +33,17 @@ pub fn hit_seed(seed: u32, index: u32) -> u32 {
 /// Two random numbers of a pixel: the generator pcg3d (Jarzynski and Olano 2020).
 #[inline(always)]
 pub fn scramble(x: u32, y: u32, seed: u32) -> [u32; 2] {
-    let mut v = [x, y, seed].map(
-        #[inline(always)]
-        |c| c.wrapping_mul(PCG[0]).wrapping_add(PCG[1]),
-    );
+    let mut v = [x, y, seed];
+    for c in &mut v {
+        *c = c.wrapping_mul(PCG[0]).wrapping_add(PCG[1]);
+    }
     for _ in 0..2 {
         v[0] = v[0].wrapping_add(v[1].wrapping_mul(v[2]));
         v[1] = v[1].wrapping_add(v[2].wrapping_mul(v[0]));
         v[2] = v[2].wrapping_add(v[0].wrapping_mul(v[1]));
-        v = v.map(
-            #[inline(always)]
-            |c| c ^ c >> 16,
-        );
+        for c in &mut v {
+            *c ^= *c >> 16;
+        }
     }
     [v[0], v[1]]
 }

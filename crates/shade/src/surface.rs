@@ -69,20 +69,20 @@ fn matte<R: Real>(
 
 #[inline(always)]
 fn phong<R: Real>(
-    heaven: &SkyColours<R::Scalar>,
+    sky_colours: &SkyColours<R::Scalar>,
     what: &LocalMaterial<R>,
     light: &Lighting<R>,
 ) -> Vec3<R> {
     let (n, d) = (light.normal, light.direction);
     let dull = what.metallic.one_minus();
-    let incoming = matte(heaven, what, light);
+    let incoming = matte(sky_colours, what, light);
     // highlights and reflections of metals take their colour
     let tinted = what.albedo * what.metallic + Vec3::splat(dull);
     let cosine = -n.dot(d);
     let mirror = d + n * (cosine * 2.0);
     let (sharp, wide) = (
-        sky(heaven, mirror.y),
-        ambient(heaven, n.y) / heaven.ambient.max(1e-3),
+        sky(sky_colours, mirror.y),
+        ambient(sky_colours, n.y) / sky_colours.ambient.max(1e-3),
     );
     let rough = what.roughness;
     let seen = sharp * rough.one_minus() + wide * rough;

@@ -227,10 +227,10 @@ pub fn across<R: Real>(
     up: Vec3<R::Scalar>,
     origin: Vec3<R::Scalar>,
 ) -> Vec3<R> {
-    let [right, up, origin] = [right, up, origin].map(
-        #[inline(always)]
-        |c| v3(q.x.like(c.x), q.x.like(c.y), q.x.like(c.z)),
-    );
+    let x = q.x;
+    let right = v3(x.like(right.x), x.like(right.y), x.like(right.z));
+    let up = v3(x.like(up.x), x.like(up.y), x.like(up.z));
+    let origin = v3(x.like(origin.x), x.like(origin.y), x.like(origin.z));
     right * q.x + up * q.y + origin
 }
 

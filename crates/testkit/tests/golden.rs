@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 use zeroset::language::load::{Options, load};
 use zeroset::output::compare::compare;
-use zeroset::output::format::Notes;
+use zeroset::output::format::Metadata;
 use zeroset::output::format::png::Depth;
 use zeroset::output::format::read::read;
 use zeroset::output::picture::Picture;
@@ -48,7 +48,7 @@ fn render(path: &Path) -> Film {
 fn save(path: &Path, picture: &Picture) {
     zeroset::output::atomic::create_folder(path.parent().unwrap()).unwrap();
     zeroset::output::atomic::write_atomically(path, |writer| {
-        zeroset::output::format::png::write(writer, picture, Depth::Eight, &Notes::new("golden"))
+        zeroset::output::format::png::write(writer, picture, Depth::Eight, &Metadata::new("golden"))
     })
     .unwrap();
 }

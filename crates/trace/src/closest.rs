@@ -3,7 +3,7 @@
 use crate::isolate::{Crossing, Isolation, Line};
 use crate::march::{Arrived, ITERATIONS, ORDINAL, Sink, Stream, stream};
 use crate::marcher::{Auto, Enhanced, Fixed, Marcher, Relaxed, Sphere};
-use crate::ray::{Common, Queue, Ray};
+use crate::ray::{Common, Queue, WideRay};
 use crate::simd::{Chosen, INSIDE, Sheet, TILE_RAYS};
 use crate::tile::{Exhausted, Hits, Rays, Solid};
 use fearless_simd::{Simd, prelude::*};
@@ -28,7 +28,7 @@ pub(crate) struct Plan {
 }
 
 /// The parts of the scratch memory that finding hits takes.
-pub(crate) struct Rooms<'q> {
+pub(crate) struct MarchMemory<'q> {
     pub(crate) hits: &'q mut Hits,
     pub(crate) rays: &'q mut Rays,
     pub(crate) work: &'q mut Workspace,
@@ -44,7 +44,7 @@ pub(crate) fn closest<S: Simd>(
     plan: &Plan,
     solid: &Solid<'_>,
     queue: &Queue,
-    q: Rooms<'_>,
+    q: MarchMemory<'_>,
 ) -> u64 {
     match plan.march {
         March::Fixed { step } => first(s, Fixed { step }, plan, solid, queue, q),
@@ -89,14 +89,14 @@ pub(crate) fn crossings<S: Simd>(
     most: usize,
     solid: &Solid<'_>,
     queue: &Queue,
-    q: Rooms<'_>,
+    q: MarchMemory<'_>,
 ) -> u64 {
     debug_assert!(queue.count * most <= TILE_RAYS);
     q.hits.count = 0;
     q.hits.common = queue.common;
     q.exhausted.clear();
     q.steps[..queue.count].fill(0.0);
-    let mut all = All {
+    let mut all = AllHits {
         most: most as f32,
         fractal: solid.fractal,
         hits: q.hits,
@@ -117,12 +117,12 @@ fn first<S: Simd, M: Marcher>(
     plan: &Plan,
     solid: &Solid<'_>,
     queue: &Queue,
-    q: Rooms<'_>,
+    q: MarchMemory<'_>,
 ) -> u64 {
     q.hits.count = 0;
     q.hits.common = queue.common;
     q.exhausted.clear();
-    let mut list = List {
+    let mut list = FirstHits {
         plan,
         fractal: solid.fractal,
         hits: q.hits,
@@ -135,7 +135,7 @@ fn first<S: Simd, M: Marcher>(
 }
 
 /// What becomes of rays.
-struct List<'a> {
+struct FirstHits<'a> {
     plan: &'a Plan,
     fractal: bool,
     hits: &'a mut Hits,
@@ -143,7 +143,7 @@ struct List<'a> {
     exhausted: &'a mut Vec<Exhausted>,
 }
 
-impl<S: Simd> Sink<S> for List<'_> {
+impl<S: Simd> Sink<S> for FirstHits<'_> {
     #[inline(always)]
     fn found(&mut self, done: Chosen<S>, common: &Common, at: &Arrived<S>) {
         self.hits.add(self.fractal, done, common, at);
@@ -167,7 +167,7 @@ impl<S: Simd> Sink<S> for List<'_> {
 }
 
 /// What becomes of rays that go on.
-struct All<'a> {
+struct AllHits<'a> {
     /// Surfaces that a ray may meet.
     most: f32,
     fractal: bool,
@@ -177,7 +177,7 @@ struct All<'a> {
     exhausted: &'a mut Vec<Exhausted>,
 }
 
-impl<S: Simd> Sink<S> for All<'_> {
+impl<S: Simd> Sink<S> for AllHits<'_> {
     const CROSSES: bool = true;
     #[inline(always)]
     fn found(&mut self, done: Chosen<S>, common: &Common, at: &Arrived<S>) {
@@ -275,7 +275,7 @@ impl Hits {
         self.count += done.count;
     }
 
-    fn push(&mut self, ray: &Ray<f32>, t: f32, word: u32, steps: u32) {
+    fn push(&mut self, ray: &WideRay<f32>, t: f32, word: u32, steps: u32) {
         let n = self.count;
         self.rays.set(n, ray);
         (self.t[n], self.word[n], self.steps[n]) = (t, word, steps as f32);

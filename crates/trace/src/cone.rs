@@ -10,7 +10,7 @@ use crate::order;
 use crate::primary;
 use crate::ray::{Common, Queue};
 use crate::simd::{Chosen, INSIDE, load, splat, store};
-use crate::tile::{Area, HEIGHT, Rays, Scratch, Solid, Spans, WIDTH};
+use crate::tile::{Area, HEIGHT, RaySpans, Rays, Scratch, Solid, WIDTH};
 use fearless_simd::{Simd, prelude::*};
 use zeroset_number::lanes::LaneMask;
 use zeroset_number::{Lanes, Ops, Real};
@@ -227,18 +227,18 @@ fn run<S: Simd, M: Marcher>(
     q.next.start[..count].fill(f32::INFINITY);
     q.next.end[..count].copy_from_slice(&q.queue.spans.end[..count]);
     q.queue.count = count;
-    let mut found = Found { spans: &mut q.next };
+    let mut found = ConeEnds { spans: &mut q.next };
     let (queue, rays, work) = (&q.queue, &mut q.rays, &mut q.work);
     q.counts.prepass += stream(s, marcher, &how, queue, rays, work, &mut found);
     std::mem::swap(&mut q.queue.spans, &mut q.next);
 }
 
 /// Where cones ended.
-struct Found<'a> {
-    spans: &'a mut Spans,
+struct ConeEnds<'a> {
+    spans: &'a mut RaySpans,
 }
 
-impl<S: Simd> Sink<S> for Found<'_> {
+impl<S: Simd> Sink<S> for ConeEnds<'_> {
     #[inline(always)]
     fn found(&mut self, done: Chosen<S>, _common: &Common, at: &Arrived<S>) {
         // all cones and rays within this one keep this far from the surface; a cone that met it at once began too near to tell

@@ -19,7 +19,7 @@ use zeroset_shade::surface::{Lighting, colour};
 
 /// A sample of the pixels of a tile.
 #[derive(Clone, Copy)]
-pub(crate) struct Sample<'a> {
+pub(crate) struct TileSample<'a> {
     pub(crate) job: &'a Job<'a>,
     pub(crate) solid: &'a Solid<'a>,
     pub(crate) area: &'a Area,
@@ -34,7 +34,7 @@ pub(crate) struct Sample<'a> {
 pub(crate) trait Integrator {
     /// Finds the light that comes back along the rays of `q.hits`, into their `colour`; beside it what the planes show of light:
     /// `open`, `shadow`, `albedo`.
-    fn integrate<S: Simd>(&self, s: S, sample: &Sample<'_>, q: &mut Scratch);
+    fn integrate<S: Simd>(&self, s: S, sample: &TileSample<'_>, q: &mut Scratch);
 }
 
 /// Light that comes from lights and the sky and is reflected once, as a method says that it does; the sky's through what an occlusion
@@ -43,7 +43,7 @@ pub(crate) trait Integrator {
 pub(crate) struct Direct;
 
 impl Integrator for Direct {
-    fn integrate<S: Simd>(&self, s: S, sample: &Sample<'_>, q: &mut Scratch) {
+    fn integrate<S: Simd>(&self, s: S, sample: &TileSample<'_>, q: &mut Scratch) {
         occlude(s, sample, q);
         light(s, sample, q);
         shade(s, sample, q);
@@ -51,7 +51,7 @@ impl Integrator for Direct {
 }
 
 /// Finds the ambient visibility, object by object where they chose different methods.
-fn occlude<S: Simd>(s: S, sample: &Sample<'_>, q: &mut Scratch) {
+fn occlude<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
     let (picture, solid, area) = (sample.job.picture, sample.solid, sample.area);
     let methods = &picture.methods;
     let random = |m: &Occlusion| {
@@ -107,7 +107,7 @@ fn occlude<S: Simd>(s: S, sample: &Sample<'_>, q: &mut Scratch) {
 }
 
 /// Sums up what arrives from the lights.
-fn light<S: Simd>(s: S, sample: &Sample<'_>, q: &mut Scratch) {
+fn light<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
     let (job, solid) = (sample.job, sample.solid);
     let (count, shading) = (q.hits.count, job.picture.scene.settings().shading);
     let columns = q.hits.diffuse.iter_mut().chain(&mut q.hits.gloss);
@@ -160,7 +160,7 @@ fn light<S: Simd>(s: S, sample: &Sample<'_>, q: &mut Scratch) {
 }
 
 /// Puts the colours of all hits together.
-fn shade<S: Simd>(s: S, sample: &Sample<'_>, q: &mut Scratch) {
+fn shade<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
     let (job, solid) = (sample.job, sample.solid);
     s.vectorize(
         #[inline(always)]

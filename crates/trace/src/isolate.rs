@@ -57,7 +57,7 @@ const WORK: usize = 400_000;
 
 /// A part of a ray.
 #[derive(Clone, Copy)]
-struct Part {
+struct Segment {
     from: f64,
     to: f64,
     /// Whether its end is known to be behind the surface.
@@ -75,7 +75,7 @@ pub(crate) struct Isolation<'p> {
     bound: bool,
     /// Whether the value may jump.
     chaotic: bool,
-    parts: Vec<Part>,
+    parts: Vec<Segment>,
     evaluations: u64,
 }
 
@@ -183,13 +183,13 @@ impl<'p> Isolation<'p> {
         let most = (WORK / instructions.max(1)).max(64);
         let end = f64::from(end.min(f32::MAX));
         self.parts.clear();
-        self.parts.push(Part {
+        self.parts.push(Segment {
             from: f64::from(start),
             to: end,
             ends_behind: false,
         });
         let mut looked = 0;
-        while let Some(Part {
+        while let Some(Segment {
             from,
             to,
             ends_behind,
@@ -216,13 +216,13 @@ impl<'p> Isolation<'p> {
             if within {
                 self.parts.clear();
             } else {
-                self.parts.push(Part {
+                self.parts.push(Segment {
                     from: middle,
                     to,
                     ends_behind,
                 });
             }
-            self.parts.push(Part {
+            self.parts.push(Segment {
                 from,
                 to: middle,
                 ends_behind: within,

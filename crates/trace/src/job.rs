@@ -1,7 +1,7 @@
 //! What is done for a tile: the stages, sample by sample.
 
-use crate::closest::{Plan, Rooms, closest};
-use crate::integrator::{Direct, Integrator, Sample};
+use crate::closest::{MarchMemory, Plan, closest};
+use crate::integrator::{Direct, Integrator, TileSample};
 use crate::march::ORDINAL;
 use crate::normal::{normals, place};
 use crate::order::{self, PLACE};
@@ -171,7 +171,7 @@ impl<'a> Job<'a> {
             q.steps.fill(0.0);
         }
         primary::aim(s, solid.view, area, &q.jitter, &mut q.queue);
-        let rooms = Rooms {
+        let rooms = MarchMemory {
             hits: &mut q.hits,
             rays: &mut q.rays,
             work: &mut q.work,
@@ -180,7 +180,7 @@ impl<'a> Job<'a> {
         };
         q.counts.march += closest(s, &self.plan, solid, &q.queue, rooms);
         self.surfaces(s, solid, q);
-        let sample = Sample {
+        let sample = TileSample {
             job: self,
             solid,
             area,

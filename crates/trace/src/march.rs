@@ -8,8 +8,8 @@
 //! wrapping) and the side that it is marched on ([`INSIDE`]). Rays are in the order in which they began, so the first ones run out
 //! of steps first.
 
-use crate::marcher::{self, Marcher, Reach, Step};
-use crate::ray::{Common, Queue, Ray};
+use crate::marcher::{self, Marcher, RayState, Reach};
+use crate::ray::{Common, Queue, WideRay};
 use crate::simd::{Chosen, INSIDE, along, first_lanes, load, load_words, load3, sided, store3};
 use crate::tile::{Rays, Solid};
 use fearless_simd::{Simd, prelude::*};
@@ -35,7 +35,7 @@ pub(crate) fn age(word: u32, iteration: u32) -> u32 {
 
 /// Rays that ended.
 pub(crate) struct Arrived<S: Simd> {
-    pub(crate) ray: Ray<Lanes<S>>,
+    pub(crate) ray: WideRay<Lanes<S>>,
     /// The last place that is not behind the surface.
     pub(crate) t: Lanes<S>,
     /// How much farther the place behind the surface is; zero where the ray ended before it.
@@ -98,7 +98,7 @@ impl Stream<'_> {
     #[inline(always)]
     pub(crate) fn reach<S: Simd>(
         &self,
-        ray: &Ray<Lanes<S>>,
+        ray: &WideRay<Lanes<S>>,
         t: Lanes<S>,
         p: Vec3<Lanes<S>>,
     ) -> Reach<Lanes<S>> {
@@ -223,7 +223,7 @@ fn advance<S: Simd, M: Marcher, K: Sink<S>>(
     for i in (0..count).step_by(S::f32s::LEN) {
         let live = first_lanes(s, count - i);
         let value = load(s, &work.values().0, i);
-        let at = Step {
+        let at = RayState {
             t: load(s, &rays.t, i),
             z: load(s, &rays.z, i),
             r: load(s, &rays.r, i),
@@ -271,7 +271,7 @@ fn advance<S: Simd, M: Marcher, K: Sink<S>>(
                 let z = marcher.begin(-clearance, m).max(reach.least);
                 let none = S::u32s::splat(s, 0);
                 word = word ^ crossed.0.select(S::u32s::splat(s, INSIDE), none);
-                step = Step {
+                step = RayState {
                     t: Lanes::select(crossed, to, step.t),
                     z: Lanes::select(crossed, z, step.z),
                     r: Lanes::select(crossed, -clearance, step.r),

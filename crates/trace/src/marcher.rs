@@ -18,7 +18,7 @@ use zeroset_shade::march::{
 
 /// Where a ray is.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Step<R> {
+pub(crate) struct RayState<R> {
     /// Up to here nothing was passed.
     pub(crate) t: R,
     /// The next sample is this much farther. Zero before the first sample only. Negative, with the same meaning, where the
@@ -34,7 +34,7 @@ pub(crate) struct Step<R> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Advance<R: Real> {
     /// The ray afterwards.
-    pub(crate) step: Step<R>,
+    pub(crate) step: RayState<R>,
     /// Whether the surface is found: at `step.t`, or between `step.t` and the sample where that is behind the surface.
     pub(crate) hit: R::Mask,
 }
@@ -74,7 +74,7 @@ pub(crate) trait Marcher: Copy + Send + Sync {
 pub(crate) fn advance<R: Rough<Scalar = f32>, M: Marcher>(
     marcher: M,
     touch: bool,
-    at: Step<R>,
+    at: RayState<R>,
     f: R,
     reach: Reach<R>,
     first: R::Mask,
@@ -84,7 +84,7 @@ pub(crate) fn advance<R: Rough<Scalar = f32>, M: Marcher>(
     let crossed = f.below(reach.behind) | (f.below(0.0) & at.r.below(0.0));
     if !M::CAREFUL {
         let (next, m) = marcher.next(f, z, at.r, at.m, first);
-        let step = Step {
+        let step = RayState {
             t: R::select(crossed, at.t, at.t + z),
             z: next,
             r: R::select(crossed, at.r, f),
@@ -131,7 +131,7 @@ pub(crate) fn advance<R: Rough<Scalar = f32>, M: Marcher>(
             & guess.below(reach.near * GUESS_LONGEST);
         R::select(fit, -guess, next)
     };
-    let step = Step { t, z: next, r, m };
+    let step = RayState { t, z: next, r, m };
     Advance { step, hit }
 }
 
@@ -256,7 +256,7 @@ mod tests {
 
     /// Marches along a function of one variable with slope at most 1; where the sign changed, the samples it took.
     fn run<M: Marcher>(m: M, f: impl Fn(f32) -> f32, end: f32) -> (Option<[f32; 2]>, u32) {
-        let mut at = Step {
+        let mut at = RayState {
             t: 0.0,
             z: 0.0,
             r: 0.0,

@@ -1,7 +1,7 @@
 //! Primary rays: those from the eye, one a pixel.
 
 use crate::order;
-use crate::ray::{Common, Queue, Ray};
+use crate::ray::{Common, Queue, WideRay};
 use crate::simd::{Sheet, load, splat};
 use crate::tile::{Area, HEIGHT, WIDTH};
 use fearless_simd::{Simd, prelude::*};
@@ -34,10 +34,10 @@ pub(crate) fn aim<S: Simd>(
 
 /// The rays from the eye through these places of the picture, in pixels.
 #[inline(always)]
-pub(crate) fn ray<S: Simd>(view: &View, x: Lanes<S>, y: Lanes<S>) -> Ray<Lanes<S>> {
+pub(crate) fn ray<S: Simd>(view: &View, x: Lanes<S>, y: Lanes<S>) -> WideRay<Lanes<S>> {
     let ray = view.ray(x, y);
     let (origin, direction) = view.split(ray);
-    Ray {
+    WideRay {
         origin,
         direction,
         narrow: view.narrow(ray),

@@ -1,6 +1,6 @@
 //! Rays of one's own, from anywhere to anywhere: what they meet first, all that they meet, whether anything stands in their way.
 
-use crate::closest::{Plan, Rooms, closest, crossings};
+use crate::closest::{MarchMemory, Plan, closest, crossings};
 use crate::march::ORDINAL;
 use crate::normal::{normals, place};
 use crate::ray;
@@ -87,7 +87,7 @@ pub enum QueryError {
 }
 
 /// A query at work.
-struct Worker<'a> {
+struct Query<'a> {
     picture: &'a PreparedScene,
     view: View,
     /// Surfaces that a ray may meet.
@@ -134,9 +134,9 @@ impl PreparedScene {
     /// # Errors
     /// See [`QueryError`].
     pub fn closest(&self, rays: &[Ray], width: f32) -> Result<Vec<Option<Hit>>, QueryError> {
-        self.answer(rays, width, 1, |worker, q| {
+        self.answer(rays, width, 1, |query, q| {
             let mut found = vec![None; q.queue.count];
-            for (number, hit) in worker.hits(q) {
+            for (number, hit) in query.hits(q) {
                 found[number] = Some(hit);
             }
             found
@@ -157,9 +157,9 @@ impl PreparedScene {
         if most == 0 {
             return Ok(vec![Vec::new(); rays.len()]);
         }
-        self.answer(rays, width, most.min(TILE_RAYS), |worker, q| {
+        self.answer(rays, width, most.min(TILE_RAYS), |query, q| {
             let mut found = vec![Vec::new(); q.queue.count];
-            for (number, hit) in worker.hits(q) {
+            for (number, hit) in query.hits(q) {
                 found[number].push(hit);
             }
             for hits in &mut found {
@@ -174,9 +174,9 @@ impl PreparedScene {
     /// # Errors
     /// See [`QueryError`].
     pub fn occluded(&self, rays: &[Ray], width: f32) -> Result<Vec<bool>, QueryError> {
-        self.answer(rays, width, 1, |worker, q| {
-            worker.with(q, |worker, solid, q| {
-                at_level!(worker.picture.renderer.level, s => occluded(s, solid, q));
+        self.answer(rays, width, 1, |query, q| {
+            query.with(q, |query, solid, q| {
+                at_level!(query.picture.renderer.level, s => occluded(s, solid, q));
                 q.lit[..q.queue.count]
                     .iter()
                     .map(|lit| *lit == 0.0)
@@ -191,7 +191,7 @@ impl PreparedScene {
         rays: &[Ray],
         width: f32,
         most: usize,
-        answer: impl Fn(&Worker<'_>, &mut Scratch) -> Vec<T> + Sync,
+        answer: impl Fn(&Query<'_>, &mut Scratch) -> Vec<T> + Sync,
     ) -> Result<Vec<T>, QueryError> {
         if !(width > 0.0 && width.is_finite()) {
             return Err(QueryError::Width(width));
@@ -215,15 +215,15 @@ impl PreparedScene {
             size = size.max(ray.origin.length());
             far = far.max(end);
         }
-        let worker = Worker {
+        let query = Query {
             picture: self,
             view: View::of_rays(width, size, far),
             most,
         };
         let part = |rays: &[Ray]| {
             let mut q = self.scratch();
-            worker.fill(rays, &mut q);
-            let found = answer(&worker, &mut q);
+            query.fill(rays, &mut q);
+            let found = answer(&query, &mut q);
             self.give_back(q);
             found
         };
@@ -235,7 +235,7 @@ impl PreparedScene {
     }
 }
 
-impl Worker<'_> {
+impl Query<'_> {
     /// Puts rays into the queue, each from where the scene begins to where it ends.
     fn fill(&self, rays: &[Ray], q: &mut Scratch) {
         let (region, reach) = (&self.picture.region, self.view.threshold.at(0.0));
@@ -246,7 +246,7 @@ impl Worker<'_> {
             let [o, d] = [ray.origin, d].map(|c| v3(c.x, c.y, c.z));
             let start = region.enter(o, d, 0.0, reach).max(ray.near);
             let end = region.leave(o, d, 0.0, reach).min(ray.far);
-            let ray = ray::Ray {
+            let ray = ray::WideRay {
                 origin: o,
                 direction: d,
                 narrow: 1.0,
@@ -279,25 +279,25 @@ impl Worker<'_> {
 
     /// Follows the rays of the queue: what they meet, with the number of the ray.
     fn hits(&self, q: &mut Scratch) -> Vec<(usize, Hit)> {
-        self.with(q, |worker, solid, q| {
-            let settings = worker.picture.scene.settings();
+        self.with(q, |query, solid, q| {
+            let settings = query.picture.scene.settings();
             let plan = Plan {
                 march: settings.march,
                 select: settings.hit_selection,
                 steps: false,
             };
-            at_level!(worker.picture.renderer.level, s => {
-                let rooms = Rooms {
+            at_level!(query.picture.renderer.level, s => {
+                let rooms = MarchMemory {
                     hits: &mut q.hits,
                     rays: &mut q.rays,
                     work: &mut q.work,
                     steps: &mut q.steps,
                     exhausted: &mut q.exhausted,
                 };
-                if worker.most == 1 {
+                if query.most == 1 {
                     closest(s, &plan, solid, &q.queue, rooms);
                 } else {
-                    crossings(s, worker.most, solid, &q.queue, rooms);
+                    crossings(s, query.most, solid, &q.queue, rooms);
                 }
                 place(s, solid, 0, false, q);
                 normals(s, solid, Normals::Exact, q);

@@ -1,14 +1,14 @@
 //! Rays from anywhere to anywhere, and the columns that hold many of them.
 
 use crate::simd::{Chosen, Numbers, Sheet, first_lanes, load, load3, splat, splat3};
-use crate::tile::Spans;
+use crate::tile::RaySpans;
 use fearless_simd::{Simd, prelude::*};
 use std::ops::Range;
 use zeroset_number::{Lanes, Real, Vec3, v3};
 
 /// A ray: where it begins, where it goes, and how wide the footprint of its pixel is along it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Ray<R> {
+pub(crate) struct WideRay<R> {
     pub(crate) origin: Vec3<R>,
     /// Of length 1.
     pub(crate) direction: Vec3<R>,
@@ -19,7 +19,7 @@ pub(crate) struct Ray<R> {
     pub(crate) travelled: R,
 }
 
-impl<R: Real<Scalar = f32>> Ray<R> {
+impl<R: Real<Scalar = f32>> WideRay<R> {
     /// The way from the eye to the place at `t`.
     #[inline(always)]
     pub(crate) fn way(&self, t: R) -> R {
@@ -58,8 +58,8 @@ impl<C: Numbers> RayColumns<C> {
 
     /// The rays from number `i` on.
     #[inline(always)]
-    pub(crate) fn load<S: Simd>(&self, s: S, common: &Common, i: usize) -> Ray<Lanes<S>> {
-        Ray {
+    pub(crate) fn load<S: Simd>(&self, s: S, common: &Common, i: usize) -> WideRay<Lanes<S>> {
+        WideRay {
             origin: match common.origin {
                 Some(c) => splat3(s, c),
                 None => load3(s, &self.origin, i),
@@ -81,7 +81,7 @@ impl<C: Numbers> RayColumns<C> {
 
     /// Writes the rays from number `at` on.
     #[inline(always)]
-    pub(crate) fn store<S: Simd>(&mut self, common: &Common, ray: &Ray<Lanes<S>>, at: usize) {
+    pub(crate) fn store<S: Simd>(&mut self, common: &Common, ray: &WideRay<Lanes<S>>, at: usize) {
         let s = ray.narrow.0.token();
         self.put(Chosen::new(first_lanes(s, S::f32s::LEN)), common, ray, at);
     }
@@ -92,7 +92,7 @@ impl<C: Numbers> RayColumns<C> {
         &mut self,
         chosen: Chosen<S>,
         common: &Common,
-        ray: &Ray<Lanes<S>>,
+        ray: &WideRay<Lanes<S>>,
         at: usize,
     ) {
         if common.origin.is_none() {
@@ -110,12 +110,12 @@ impl<C: Numbers> RayColumns<C> {
     }
 
     /// Ray number `i`.
-    pub(crate) fn get(&self, common: &Common, i: usize) -> Ray<f32> {
+    pub(crate) fn get(&self, common: &Common, i: usize) -> WideRay<f32> {
         let vector = |common: Option<[f32; 3]>, columns: &[C; 3]| {
             let [x, y, z] = common.unwrap_or_else(|| columns.each_ref().map(|c| c.numbers()[i]));
             v3(x, y, z)
         };
-        Ray {
+        WideRay {
             origin: vector(common.origin, &self.origin),
             direction: vector(common.direction, &self.direction),
             narrow: common.narrow.unwrap_or_else(|| self.narrow.numbers()[i]),
@@ -124,7 +124,7 @@ impl<C: Numbers> RayColumns<C> {
     }
 
     /// Writes ray number `i`.
-    pub(crate) fn set(&mut self, i: usize, ray: &Ray<f32>) {
+    pub(crate) fn set(&mut self, i: usize, ray: &WideRay<f32>) {
         let columns = self.columns_mut();
         let numbers = (ray.origin.array().into_iter())
             .chain(ray.direction.array())
@@ -154,7 +154,7 @@ pub(crate) struct Queue {
     pub(crate) common: Common,
     pub(crate) rays: RayColumns<Box<Sheet>>,
     /// Where they start and end, and what is known of the field there. One that ends before it starts is not followed.
-    pub(crate) spans: Spans,
+    pub(crate) spans: RaySpans,
 }
 
 impl Queue {
@@ -164,18 +164,18 @@ impl Queue {
             count: 0,
             common: Common::default(),
             rays: RayColumns::new(Sheet::boxed),
-            spans: Spans::new(),
+            spans: RaySpans::new(),
         }
     }
 
     /// The rays from number `i` on.
     #[inline(always)]
-    pub(crate) fn ray<S: Simd>(&self, s: S, i: usize) -> Ray<Lanes<S>> {
+    pub(crate) fn ray<S: Simd>(&self, s: S, i: usize) -> WideRay<Lanes<S>> {
         self.rays.load(s, &self.common, i)
     }
 
     /// Adds a ray that is followed from `start` to `end`. Nothing but the field says on which side of a surface it starts.
-    pub(crate) fn push(&mut self, ray: &Ray<f32>, start: f32, end: f32) {
+    pub(crate) fn push(&mut self, ray: &WideRay<f32>, start: f32, end: f32) {
         let (i, spans) = (self.count, &mut self.spans);
         self.rays.set(i, ray);
         (spans.start[i], spans.end[i]) = (start, end);

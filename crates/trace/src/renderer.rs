@@ -251,7 +251,7 @@ impl PreparedScene {
     ) -> Part {
         let began = Instant::now();
         let size = into.size();
-        let run = Run {
+        let run = Rendering {
             picture: self,
             size,
             job: Job::new(self, camera, samples.clone(), into),
@@ -334,7 +334,7 @@ fn compiled(scene: &Scene, limits: &Limits) -> Result<(Program, Region), RenderE
 type Band<'f> = Mutex<Vec<(Sum, &'f mut [f32])>>;
 
 /// One rendering.
-struct Run<'a> {
+struct Rendering<'a> {
     picture: &'a PreparedScene,
     size: [u32; 2],
     job: Job<'a>,
@@ -347,7 +347,7 @@ struct Run<'a> {
     finished: Mutex<Vec<usize>>,
 }
 
-impl Run<'_> {
+impl Rendering<'_> {
     fn all(&self, into: &mut Accumulator) -> Done {
         let mut bands = bands(into);
         if self.job.is_filtered() {

@@ -162,7 +162,7 @@ impl<S: Simd> Departures<S> for FromQueue<'_> {
 }
 
 /// What secondary rays are followed in.
-struct Memory<'q> {
+struct RayMemory<'q> {
     rays: &'q mut SecondaryRays,
     ended: &'q mut Ended,
     work: &'q mut Workspace,
@@ -179,7 +179,7 @@ pub(crate) fn from_hits<S: Simd, P: Penumbra<S>>(
     q: &mut Scratch,
 ) -> u64 {
     let from = FromHits { hits: &q.hits, aim };
-    let memory = Memory {
+    let memory = RayMemory {
         rays: &mut q.secondary,
         ended: &mut q.ended,
         work: &mut q.work,
@@ -195,7 +195,7 @@ pub(crate) fn occluded<S: Simd>(s: S, solid: &Solid<'_>, q: &mut Scratch) -> u64
         queue: &q.queue,
         solid,
     };
-    let memory = Memory {
+    let memory = RayMemory {
         rays: &mut q.secondary,
         ended: &mut q.ended,
         work: &mut q.work,
@@ -211,7 +211,7 @@ fn stream<S: Simd, P: Penumbra<S>, D: Departures<S>>(
     from: &D,
     solid: &Solid<'_>,
     range: Range<usize>,
-    mut q: Memory<'_>,
+    mut q: RayMemory<'_>,
 ) -> u64 {
     s.vectorize(
         #[inline(always)]
@@ -252,7 +252,7 @@ fn start<S: Simd, P: Penumbra<S>, D: Departures<S>>(
     solid: &Solid<'_>,
     range: Range<usize>,
     iteration: u32,
-    q: &mut Memory<'_>,
+    q: &mut RayMemory<'_>,
 ) {
     let at = range.start;
     let ray = from.depart(s, at);
@@ -324,7 +324,7 @@ fn start<S: Simd, P: Penumbra<S>, D: Departures<S>>(
 }
 
 #[inline(always)]
-fn sample<S: Simd>(s: S, common: Option<[f32; 3]>, solid: &Solid<'_>, q: &mut Memory<'_>) {
+fn sample<S: Simd>(s: S, common: Option<[f32; 3]>, solid: &Solid<'_>, q: &mut RayMemory<'_>) {
     let (rays, points) = (&*q.rays, q.work.points_mut());
     for i in (0..rays.count).step_by(S::f32s::LEN) {
         let d = match common {
@@ -351,7 +351,7 @@ fn advance<S: Simd, P: Penumbra<S>>(
     penumbra: P,
     aimed: bool,
     solid: &Solid<'_>,
-    q: &mut Memory<'_>,
+    q: &mut RayMemory<'_>,
 ) {
     let (close, skins) = (solid.close, solid.skins && !P::HARD);
     let (rays, ended) = (&mut *q.rays, &mut *q.ended);
@@ -468,7 +468,7 @@ fn retire<S: Simd, P: Penumbra<S>>(
     _penumbra: P,
     max_steps: u32,
     iteration: u32,
-    q: &mut Memory<'_>,
+    q: &mut RayMemory<'_>,
 ) {
     let (rays, ended) = (&mut *q.rays, &mut *q.ended);
     let old = |w: &u32| age(*w, iteration) >= max_steps;

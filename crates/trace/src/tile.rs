@@ -3,7 +3,7 @@
 use crate::march::ITERATIONS;
 use crate::order::Sorting;
 use crate::planes::Planes;
-use crate::ray::{Common, Queue, Ray, RayColumns};
+use crate::ray::{Common, Queue, RayColumns, WideRay};
 use crate::simd::{Row, SLACK, Sheet, TILE_RAYS, WordRow, WordSheet};
 use crate::stop::Stop;
 use fearless_simd::Simd;
@@ -97,13 +97,13 @@ impl<'a> Solid<'a> {
 impl Solid<'_> {
     /// The radius of the footprint at the distance `t` of a ray.
     #[inline(always)]
-    pub(crate) fn near<R: Real<Scalar = f32>>(&self, ray: &Ray<R>, t: R) -> R {
+    pub(crate) fn near<R: Real<Scalar = f32>>(&self, ray: &WideRay<R>, t: R) -> R {
         self.view.near(ray.way(t), ray.narrow)
     }
 
     /// The width of a pixel at the distance `t` of a ray.
     #[inline(always)]
-    pub(crate) fn width<R: Real<Scalar = f32>>(&self, ray: &Ray<R>, t: R) -> R {
+    pub(crate) fn width<R: Real<Scalar = f32>>(&self, ray: &WideRay<R>, t: R) -> R {
         self.view.width(ray.way(t), ray.narrow)
     }
 }
@@ -150,7 +150,7 @@ pub(crate) struct Ended {
 /// A ray that ran out of steps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Exhausted {
-    pub(crate) ray: Ray<f32>,
+    pub(crate) ray: WideRay<f32>,
     /// Up to here nothing was passed.
     pub(crate) t: f32,
     pub(crate) end: f32,
@@ -210,13 +210,13 @@ pub(crate) struct Hits {
 impl Hits {
     /// The rays of the hits from number `i` on.
     #[inline(always)]
-    pub(crate) fn ray<S: Simd>(&self, s: S, i: usize) -> Ray<Lanes<S>> {
+    pub(crate) fn ray<S: Simd>(&self, s: S, i: usize) -> WideRay<Lanes<S>> {
         self.rays.load(s, &self.common, i)
     }
 }
 
 /// Where rays start and end, and the slope of the field where they start.
-pub(crate) struct Spans {
+pub(crate) struct RaySpans {
     pub(crate) start: Box<Sheet>,
     pub(crate) end: Box<Sheet>,
     pub(crate) slope: Box<Sheet>,
@@ -224,9 +224,9 @@ pub(crate) struct Spans {
     pub(crate) radius: Box<Sheet>,
 }
 
-impl Spans {
-    pub(crate) fn new() -> Spans {
-        Spans {
+impl RaySpans {
+    pub(crate) fn new() -> RaySpans {
+        RaySpans {
             start: Sheet::boxed(),
             end: Sheet::boxed(),
             slope: Sheet::boxed(),
@@ -243,9 +243,9 @@ pub(crate) struct Scratch {
     /// Cells, in the end the rays of pixels.
     pub(crate) queue: Queue,
     /// The spans of the cells that are larger by one size.
-    pub(crate) parents: Spans,
+    pub(crate) parents: RaySpans,
     /// The spans that are being found.
-    pub(crate) next: Spans,
+    pub(crate) next: RaySpans,
     pub(crate) rays: Box<Rays>,
     pub(crate) secondary: Box<SecondaryRays>,
     pub(crate) ended: Ended,
@@ -276,8 +276,8 @@ impl Scratch {
             work: Workspace::new(program.values(), program.marks()),
             jitter: [Sheet::boxed(), Sheet::boxed()],
             queue: Queue::new(),
-            parents: Spans::new(),
-            next: Spans::new(),
+            parents: RaySpans::new(),
+            next: RaySpans::new(),
             rays: Box::new(Rays {
                 ray: RayColumns::new(row),
                 t: row(),

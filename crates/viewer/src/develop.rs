@@ -4,7 +4,7 @@ use eframe::egui::{Color32, ColorImage};
 use std::sync::LazyLock;
 use zeroset_output::picture::Picture;
 use zeroset_output::tone;
-use zeroset_output::view::View;
+use zeroset_output::view::PlaneView;
 use zeroset_scene::film::{Film, Plane};
 
 /// Octaves below 1 that the table of the sRGB curve covers; what is darker lies on its straight part.
@@ -39,11 +39,11 @@ fn encode(curve: &[f32], linear: f32) -> f32 {
 }
 
 /// What a view of a film shows, as pixels of the window; without a legend.
-pub(crate) fn develop(film: &Film, view: &View<'_>) -> ColorImage {
+pub(crate) fn develop(film: &Film, view: &PlaneView<'_>) -> ColorImage {
     let size = [film.width() as usize, film.height() as usize];
     if view.plane != Plane::Colour || !film.has(Plane::Colour) {
         return pixels(
-            &View {
+            &PlaneView {
                 legend: false,
                 ..*view
             }
@@ -107,7 +107,7 @@ mod tests {
         for (i, x) in (0..).zip(film.plane_mut(Plane::Colour)) {
             *x = i as f32 / 300.0;
         }
-        let view = View {
+        let view = PlaneView {
             plane: Plane::Colour,
             exposure: 0.5,
             legend: false,

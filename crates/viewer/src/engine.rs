@@ -11,7 +11,7 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use zeroset_output::view::section::Section;
-use zeroset_output::view::{Key, View};
+use zeroset_output::view::{LegendKey, PlaneView};
 use zeroset_scene::accumulator::Accumulator;
 use zeroset_scene::camera::Camera;
 use zeroset_scene::fallback::Fallback;
@@ -123,7 +123,7 @@ pub struct Exposed {
     /// What the window shows.
     pub image: Arc<ColorImage>,
     /// What its colours mean, where they are numbers.
-    pub key: Option<Key>,
+    pub key: Option<LegendKey>,
     /// Which picture of the ladder it is.
     pub rung: Rung,
     /// Seconds that its rays took.
@@ -591,7 +591,7 @@ impl Worker<'_> {
     fn show(&mut self, request: &Arc<Request>, films: &[Take], is_last: bool) {
         let mut sides = Vec::with_capacity(films.len());
         for (look, take) in request.looks.iter().zip(films) {
-            let view = View {
+            let view = PlaneView {
                 plane: look.plane,
                 exposure: look.settings.exposure,
                 legend: false,

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use zeroset_language::naming::default_stem;
 use zeroset_output::atomic::write_atomically;
 use zeroset_output::format::png::{self, Depth};
-use zeroset_output::format::{Notes, exr};
-use zeroset_output::view::View;
+use zeroset_output::format::{Metadata, exr};
+use zeroset_output::view::PlaneView;
 use zeroset_scene::film::Plane;
 
 /// The name of a picture that was given none: from the file's name, whatever the scene calls itself.
@@ -34,12 +34,12 @@ pub(crate) fn save(session: &Session, name: &str) -> Result<PathBuf, String> {
         return Err("there is no picture yet".to_owned());
     };
     let scene = &shown.request.scene;
-    let notes = Notes::new(scene.name()).with("Camera", session.rig.statement());
+    let notes = Metadata::new(scene.name()).with("Camera", session.rig.statement());
     let wrong = |e: zeroset_output::atomic::WriteError| format!("{e}; {}", e.advice());
     match ending(&path).as_deref() {
         Some("png") => {
             let names: Vec<String> = scene.objects().iter().map(|o| o.name.clone()).collect();
-            let view = View {
+            let view = PlaneView {
                 plane: look.plane,
                 exposure: look.settings.exposure,
                 legend: true,

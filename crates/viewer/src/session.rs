@@ -11,7 +11,7 @@ use std::sync::Arc;
 use zeroset_language::load::{Loaded, Options, Parameter, Setting};
 use zeroset_language::naming::default_stem;
 use zeroset_output::display::{NAME, name};
-use zeroset_output::view::Key;
+use zeroset_output::view::LegendKey;
 use zeroset_scene::camera::Camera;
 use zeroset_scene::film::Plane;
 use zeroset_scene::scene::Scene;
@@ -27,7 +27,7 @@ pub struct Current {
 
 /// Two looks beside each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Comparison {
+pub struct SideBySide {
     /// Whether both are shown.
     pub is_on: bool,
     /// Where the divider is, as a share of the picture's width.
@@ -55,7 +55,7 @@ pub struct Session {
     /// How A and B show the scene.
     pub looks: [Look; 2],
     /// A and B beside each other.
-    pub comparison: Comparison,
+    pub comparison: SideBySide,
     /// Whether pictures go on to 64 rays a pixel while nothing changes.
     pub refine: bool,
     /// The plane through the field, and whether it is shown.
@@ -105,7 +105,7 @@ impl Session {
             rig: Rig::new(&camera, None),
             is_free: false,
             looks: [look; 2],
-            comparison: Comparison {
+            comparison: SideBySide {
                 is_on: false,
                 divider: 0.5,
                 edited: 0,
@@ -274,7 +274,7 @@ impl Session {
     }
 
     /// What the colours of the edited look mean, where they are numbers.
-    pub fn key(&self) -> Option<&Key> {
+    pub fn key(&self) -> Option<&LegendKey> {
         let sides = &self.shown.as_ref()?.sides;
         let edited = self.comparison.edited.min(sides.len().saturating_sub(1));
         sides.get(edited)?.key.as_ref()

@@ -52,7 +52,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             file,
             &picture,
             format::png::Depth::Eight,
-            &format::Notes::new(scene.name()),
+            &format::Metadata::new(scene.name()),
         )
     })?;
     println!("{}", path.display());

@@ -60,33 +60,33 @@ pub(crate) struct Global {
 pub(crate) enum Command {
     /// Open a window on a scene: fly through it, move its sliders, compare methods. `zeroset SCENE` does the same
     #[cfg(feature = "window")]
-    View(View),
+    View(ViewArgs),
     /// Render a scene to a picture
-    Render(Render),
+    Render(RenderArgs),
     /// Check a scene: its objects, their bounds, what is proven about their distances, what a picture will cost
-    Check(Check),
+    Check(CheckArgs),
     /// Print a scene as JSON, which every command takes in place of a script
-    Expand(Expand),
+    Expand(ExpandArgs),
     /// Print a scene as one shader: WGSL, or GLSL that runs when it is pasted into Shadertoy
     #[cfg(feature = "shaders")]
-    Export(Export),
+    Export(ExportArgs),
     /// List what the scene language offers, or explain one name
-    Fields(Fields),
+    Fields(FieldsArgs),
     /// Draw a section through a scene's distance field, with lines of equal distance
-    Slice(Slice),
+    Slice(SliceArgs),
     /// Say how different two pictures are: RMSE, PSNR, SSIM and FLIP
-    Compare(Compare),
+    Compare(CompareArgs),
     /// Measure how fast this machine is
-    Bench(Bench),
+    Bench(BenchArgs),
     /// List the GPUs of this machine, what they can do, and which one renders
     #[cfg(feature = "gpu")]
-    Gpu(Gpu),
+    Gpu(GpuArgs),
     /// Make a folder with a first scene to play with
-    Init(Init),
+    Init(InitArgs),
     /// Print completions for a shell
-    Completions(Completions),
+    Completions(CompletionsArgs),
     /// Print a manual page
-    Man(Man),
+    Man(ManArgs),
 }
 
 /// A scene and what changes it.
@@ -114,7 +114,7 @@ pub(crate) struct SceneArgs {
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct Render {
+pub(crate) struct RenderArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
     /// The picture: .png, or .exr with all planes as layers. Default: named as the scene's file, in this folder
@@ -221,7 +221,7 @@ fn put<T: Choice>(
 
 #[cfg(feature = "window")]
 #[derive(Debug, Args)]
-pub(crate) struct View {
+pub(crate) struct ViewArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
     /// What renders
@@ -236,7 +236,7 @@ pub(crate) struct View {
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct Check {
+pub(crate) struct CheckArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
     /// Print as JSON
@@ -245,7 +245,7 @@ pub(crate) struct Check {
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct Expand {
+pub(crate) struct ExpandArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
     /// Write to a file instead of standard output
@@ -255,7 +255,7 @@ pub(crate) struct Expand {
 
 #[cfg(feature = "shaders")]
 #[derive(Debug, Args)]
-pub(crate) struct Export {
+pub(crate) struct ExportArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
     #[command(flatten)]
@@ -281,7 +281,7 @@ pub(crate) struct ShaderLanguage {
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct Fields {
+pub(crate) struct FieldsArgs {
     /// The name to explain. Default: list all names
     #[arg(value_name = "NAME")]
     pub name: Option<String>,
@@ -291,7 +291,7 @@ pub(crate) struct Fields {
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct Slice {
+pub(crate) struct SliceArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
     /// The plane of the section, for example z=0 or y=-0.5
@@ -312,7 +312,7 @@ pub(crate) struct Slice {
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct Compare {
+pub(crate) struct CompareArgs {
     /// The reference: PNG or OpenEXR
     #[arg(value_name = "A", value_hint = ValueHint::FilePath)]
     pub reference: PathBuf,
@@ -328,7 +328,7 @@ pub(crate) struct Compare {
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct Bench {
+pub(crate) struct BenchArgs {
     #[command(subcommand)]
     pub measure: Measure,
 }
@@ -374,28 +374,28 @@ pub(crate) struct MeasuredFrame {
 
 #[cfg(feature = "gpu")]
 #[derive(Debug, Args)]
-pub(crate) struct Gpu {
+pub(crate) struct GpuArgs {
     /// Print as JSON
     #[arg(long)]
     pub json: bool,
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct Init {
+pub(crate) struct InitArgs {
     /// The folder; it is made if there is none. Nothing in it is replaced
     #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub folder: PathBuf,
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct Completions {
+pub(crate) struct CompletionsArgs {
     /// The shell
     #[arg(value_name = "SHELL")]
     pub shell: Shell,
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct Man {
+pub(crate) struct ManArgs {
     /// The command to explain. Default: zeroset itself
     #[arg(value_name = "COMMAND")]
     pub command: Option<String>,

@@ -58,7 +58,7 @@ impl Used {
 }
 
 /// As much of a picture as there was time for.
-pub(crate) struct Part {
+pub(crate) struct PartialPicture {
     pub(crate) film: Film,
     pub(crate) statistics: Statistics,
     pub(crate) used: Used,
@@ -67,18 +67,18 @@ pub(crate) struct Part {
 }
 
 /// The renderer that was asked for.
-pub(crate) struct Engine {
+pub(crate) struct ChosenRenderer {
     threads: Option<usize>,
     /// Made when it is needed.
     cpu: Arc<OnceLock<CpuRenderer>>,
     /// The GPU, or the CPU where it fails.
     #[cfg(feature = "gpu")]
-    gpu: Option<Gpu>,
+    gpu: Option<KnownGpu>,
 }
 
 /// The GPU, and what is known of it.
 #[cfg(feature = "gpu")]
-struct Gpu {
+struct KnownGpu {
     title: String,
     renderer: Box<dyn Renderer>,
     /// Whether the CPU stands in for it by now.
@@ -86,20 +86,20 @@ struct Gpu {
 }
 
 #[cfg(feature = "gpu")]
-impl Gpu {
+impl KnownGpu {
     fn is_there(&self) -> bool {
         !self.failed.load(Ordering::Relaxed)
     }
 }
 
-impl Engine {
+impl ChosenRenderer {
     /// Looks for what is asked for. `adapter` is a part of a GPU's name.
     pub(crate) fn new(
         backend: Backend,
         adapter: Option<&str>,
         threads: Option<usize>,
         console: &Console,
-    ) -> Result<Engine, Failure> {
+    ) -> Result<ChosenRenderer, Failure> {
         let cpu = Arc::new(OnceLock::new());
         #[cfg(feature = "gpu")]
         let gpu = gpu(backend, adapter)?.map(|gpu| {
@@ -111,7 +111,7 @@ impl Engine {
             let _ = console;
             refused(backend, adapter)?;
         }
-        let engine = Engine {
+        let engine = ChosenRenderer {
             threads,
             cpu,
             #[cfg(feature = "gpu")]
@@ -153,20 +153,20 @@ impl Engine {
         Ok((frame, Used::Cpu))
     }
 
-    /// As [`Engine::render`], and keeps what is finished when the observer ends it; `None` where nothing is kept.
+    /// As [`ChosenRenderer::render`], and keeps what is finished when the observer ends it; `None` where nothing is kept.
     pub(crate) fn render_part(
         &self,
         scene: &Scene,
         planes: &[Plane],
         observer: &dyn Observer,
         restart: &(dyn Fn() + Sync),
-    ) -> Result<Option<Part>, RenderError> {
+    ) -> Result<Option<PartialPicture>, RenderError> {
         if self.is_on_gpu() {
             let (frame, used) = match self.render(scene, planes, observer, restart) {
                 Err(RenderError::Cancelled) => return Ok(None),
                 other => other?,
             };
-            return Ok(Some(Part {
+            return Ok(Some(PartialPicture {
                 film: frame.film,
                 statistics: frame.statistics,
                 used,
@@ -175,7 +175,7 @@ impl Engine {
         }
         let prepared = self.cpu()?.prepare_scene(scene.clone().into())?;
         let (part, film) = prepared.render_part(scene.settings().size, planes, observer);
-        Ok(Some(Part {
+        Ok(Some(PartialPicture {
             film,
             statistics: part.statistics,
             used: Used::Cpu,
@@ -185,7 +185,7 @@ impl Engine {
 
     fn is_on_gpu(&self) -> bool {
         #[cfg(feature = "gpu")]
-        return self.gpu.as_ref().is_some_and(Gpu::is_there);
+        return self.gpu.as_ref().is_some_and(KnownGpu::is_there);
         #[cfg(not(feature = "gpu"))]
         false
     }
@@ -212,7 +212,7 @@ fn standing(
     threads: Option<usize>,
     cpu: &Arc<OnceLock<CpuRenderer>>,
     console: &Console,
-) -> Gpu {
+) -> KnownGpu {
     let (title, failed) = (gpu.adapter().title(), Arc::new(AtomicBool::new(false)));
     let renderer: Box<dyn Renderer> = if falls_back {
         let (console, told) = (*console, Arc::clone(&failed));
@@ -226,7 +226,7 @@ fn standing(
     } else {
         Box::new(gpu)
     };
-    Gpu {
+    KnownGpu {
         title,
         renderer,
         failed,
@@ -313,7 +313,8 @@ mod tests {
     fn rendered(test: &str, falls_back: bool) -> Option<(Outcome, u32)> {
         let gpu = with_faults(test, Faults::default().with_memory(20_000))?;
         let console = Console::silent();
-        let mut engine = Engine::new(Backend::Cpu, None, Some(1), &console).expect("the CPU");
+        let mut engine =
+            ChosenRenderer::new(Backend::Cpu, None, Some(1), &console).expect("the CPU");
         engine.gpu = Some(standing(gpu, falls_back, Some(1), &engine.cpu, &console));
         let options = Options {
             size: Some([64, 48]),

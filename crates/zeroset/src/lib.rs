@@ -53,7 +53,7 @@
 //! let folder = std::env::temp_dir().join(format!("zeroset-doc-{}", std::process::id()));
 //! atomic::create_folder(&folder)?;
 //! atomic::write_atomically(&folder.join("bitten.png"), |writer| {
-//!     format::png::write(writer, &picture, format::png::Depth::Eight, &format::Notes::new("bitten"))
+//!     format::png::write(writer, &picture, format::png::Depth::Eight, &format::Metadata::new("bitten"))
 //! })?;
 //! # std::fs::remove_dir_all(&folder)?;
 //! # Ok(())

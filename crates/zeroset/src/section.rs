@@ -10,7 +10,7 @@ use zeroset_output::view::section::Section;
 /// The two axes of the picture are the other two in their order, so that `z` shows x to the right and y up; `y` shows
 /// x to the right and z down, as from above; `x` shows z to the left and y up, as from its tip.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plane {
+pub struct SectionPlane {
     /// 0 = x, 1 = y, 2 = z.
     pub axis: usize,
     /// Where on the axis.
@@ -21,7 +21,7 @@ pub struct Plane {
     pub pixel: f64,
 }
 
-impl Plane {
+impl SectionPlane {
     /// The axes that point right and up on the picture, with their signs.
     pub fn directions(&self) -> [(usize, f64); 2] {
         match self.axis {
@@ -103,7 +103,7 @@ mod tests {
         let centre = [0.3, -0.2, 0.1];
         let program = ball_at(centre);
         for axis in 0..3 {
-            let plane = Plane {
+            let plane = SectionPlane {
                 axis,
                 at: 0.25,
                 centre: [0.1, 0.2],
@@ -135,7 +135,7 @@ mod tests {
             (1, [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]),
             (0, [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]),
         ] {
-            let plane = Plane {
+            let plane = SectionPlane {
                 axis,
                 at: 0.0,
                 centre: [0.0; 2],

@@ -37,13 +37,11 @@ impl<const N: usize> Family<N> {
     #[inline(always)]
     fn distance<R: Real>(&self, p: Vec3<R>, a: Args<'_, R>) -> R {
         let exponent = a.get(1);
-        let products = self.normals.map(
-            #[inline(always)]
-            |n| dot(p, n).abs(),
-        );
+        let mut products = [p.x; N];
         let mut largest = p.x.lit(1e-30);
-        for product in products {
-            largest = largest.max(product);
+        for k in 0..N {
+            products[k] = dot(p, self.normals[k]).abs();
+            largest = largest.max(products[k]);
         }
         // Relative to the largest, so that no power overflows.
         let mut sum = p.x.lit(0.0);

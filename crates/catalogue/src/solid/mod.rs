@@ -72,11 +72,10 @@ fn corner<R: Real, const N: usize>(q: [R; N]) -> R {
 /// The distance to a face that ends at an edge: `over` is the distance to the face's plane, `beyond` how far the foot on the
 /// plane lies past the edge. Below the plane no edge is near.
 #[inline(always)]
-fn face<R: Real, const N: usize>(over: R, beyond: [R; N]) -> R {
-    let beyond = beyond.map(
-        #[inline(always)]
-        |b: R| b.max(0.0),
-    );
+fn face<R: Real, const N: usize>(over: R, mut beyond: [R; N]) -> R {
+    for b in &mut beyond {
+        *b = b.max(0.0);
+    }
     R::select(over.above(0.0), length2(over, R::norm(beyond)), over)
 }
 

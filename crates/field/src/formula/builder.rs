@@ -1,7 +1,7 @@
 //! Writing a formula down.
 
 use super::print::{number, text};
-use super::{Binary, LARGEST, Step, Steps, Unary};
+use super::{Binary, FormulaStep, LARGEST, Steps, Unary};
 use std::collections::HashMap;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -83,24 +83,24 @@ pub struct Builder(Arc<Mutex<State>>);
 
 #[derive(Debug)]
 struct State {
-    steps: Vec<Step>,
-    known: HashMap<Key, u32>,
+    steps: Vec<FormulaStep>,
+    known: HashMap<StepKey, u32>,
     limit: usize,
     failure: Option<BuildError>,
 }
 
 /// What makes two steps equal.
 #[derive(PartialEq, Eq, Hash, Debug)]
-enum Key {
+enum StepKey {
     Unary(Unary, u32),
     Binary(Binary, u32, u32),
 }
 
 /// Coordinates, which are always the first steps.
-const COORDINATES: [Step; 3] = [
-    Step::Coordinate(0),
-    Step::Coordinate(1),
-    Step::Coordinate(2),
+const COORDINATES: [FormulaStep; 3] = [
+    FormulaStep::Coordinate(0),
+    FormulaStep::Coordinate(1),
+    FormulaStep::Coordinate(2),
 ];
 
 impl Default for Builder {
@@ -227,8 +227,8 @@ impl Builder {
                 renamed[step] = steps.len() as u32;
                 let name = |x: u32| renamed[x as usize];
                 steps.push(match state.steps[step] {
-                    Step::Unary(f, x) => Step::Unary(f, name(x)),
-                    Step::Binary(f, x, y) => Step::Binary(f, name(x), name(y)),
+                    FormulaStep::Unary(f, x) => FormulaStep::Unary(f, name(x)),
+                    FormulaStep::Binary(f, x, y) => FormulaStep::Binary(f, name(x), name(y)),
                     leaf => leaf,
                 });
             }
@@ -268,10 +268,12 @@ fn whole(power: f64) -> Option<i32> {
 }
 
 /// Steps in which whole powers are written as products, as [`Builder`] writes them.
-pub(super) fn without_whole_powers(steps: Vec<Step>) -> Result<Vec<Step>, BuildError> {
-    let is_whole = |step: &Step| match *step {
-        Step::Binary(Binary::Pow, _, n) => {
-            matches!(steps[n as usize], Step::Constant(n) if whole(n).is_some())
+pub(super) fn without_whole_powers(
+    steps: Vec<FormulaStep>,
+) -> Result<Vec<FormulaStep>, BuildError> {
+    let is_whole = |step: &FormulaStep| match *step {
+        FormulaStep::Binary(Binary::Pow, _, n) => {
+            matches!(steps[n as usize], FormulaStep::Constant(n) if whole(n).is_some())
         }
         _ => false,
     };
@@ -284,10 +286,12 @@ pub(super) fn without_whole_powers(steps: Vec<Step>) -> Result<Vec<Step>, BuildE
         let mut names: Vec<u32> = Vec::with_capacity(steps.len());
         for step in &steps {
             let name = match *step {
-                Step::Coordinate(k) => u32::from(k),
-                Step::Constant(c) => state.constant(c),
-                Step::Unary(f, x) => state.unary(f, names[x as usize]),
-                Step::Binary(f, x, y) => state.binary(f, names[x as usize], names[y as usize]),
+                FormulaStep::Coordinate(k) => u32::from(k),
+                FormulaStep::Constant(c) => state.constant(c),
+                FormulaStep::Unary(f, x) => state.unary(f, names[x as usize]),
+                FormulaStep::Binary(f, x, y) => {
+                    state.binary(f, names[x as usize], names[y as usize])
+                }
             };
             names.push(name);
         }
@@ -298,7 +302,7 @@ pub(super) fn without_whole_powers(steps: Vec<Step>) -> Result<Vec<Step>, BuildE
 }
 
 impl State {
-    fn push(&mut self, step: Step) -> u32 {
+    fn push(&mut self, step: FormulaStep) -> u32 {
         if self.steps.len() >= self.limit {
             let limit = self.limit;
             self.failure.get_or_insert(BuildError::Steps { limit });
@@ -317,11 +321,11 @@ impl State {
             });
             return 0;
         }
-        self.push(Step::Constant(c))
+        self.push(FormulaStep::Constant(c))
     }
 
     /// A constant that an operation on constants gave.
-    fn folded(&mut self, c: f64, expression: impl FnOnce(&[Step]) -> String) -> u32 {
+    fn folded(&mut self, c: f64, expression: impl FnOnce(&[FormulaStep]) -> String) -> u32 {
         if !(-LARGEST..=LARGEST).contains(&c) {
             let expression = expression(&self.steps);
             self.failure.get_or_insert(BuildError::Constant {
@@ -330,18 +334,18 @@ impl State {
             });
             return 0;
         }
-        self.push(Step::Constant(c))
+        self.push(FormulaStep::Constant(c))
     }
 
     fn unary(&mut self, f: Unary, x: u32) -> u32 {
         match self.steps[x as usize] {
-            Step::Constant(c) => {
+            FormulaStep::Constant(c) => {
                 let value = arithmetic::unary(f, F64(c)).0;
                 return self.folded(value, |_| {
                     format!("{}({})", super::print::unary(f), number(c))
                 });
             }
-            Step::Unary(Unary::Neg, y) => match f {
+            FormulaStep::Unary(Unary::Neg, y) => match f {
                 Unary::Neg => return y,
                 Unary::Abs | Unary::Square | Unary::Cos => return self.unary(f, y),
                 _ => {}
@@ -353,22 +357,22 @@ impl State {
         {
             return self.hypot(&roots);
         }
-        if let Some(&known) = self.known.get(&Key::Unary(f, x)) {
+        if let Some(&known) = self.known.get(&StepKey::Unary(f, x)) {
             return known;
         }
-        let step = self.push(Step::Unary(f, x));
-        self.known.insert(Key::Unary(f, x), step);
+        let step = self.push(FormulaStep::Unary(f, x));
+        self.known.insert(StepKey::Unary(f, x), step);
         step
     }
 
     fn binary(&mut self, f: Binary, x: u32, y: u32) -> u32 {
         if f == Binary::Pow
-            && let Step::Constant(power) = self.steps[y as usize]
+            && let FormulaStep::Constant(power) = self.steps[y as usize]
             && let Some(n) = whole(power)
         {
             return self.power(x, n);
         }
-        if let (Step::Constant(a), Step::Constant(b)) =
+        if let (FormulaStep::Constant(a), FormulaStep::Constant(b)) =
             (self.steps[x as usize], self.steps[y as usize])
         {
             if f == Binary::Pow && a < 0.0 {
@@ -380,7 +384,7 @@ impl State {
             let value = arithmetic::binary(f, F64(a), F64(b)).0;
             return self.folded(value, |steps| {
                 let mut steps = steps.to_vec();
-                steps.push(Step::Binary(f, x, y));
+                steps.push(FormulaStep::Binary(f, x, y));
                 text(&steps, steps.len() as u32 - 1)
             });
         }
@@ -396,14 +400,14 @@ impl State {
             Binary::Add | Binary::Mul | Binary::Min | Binary::Max | Binary::Hypot
         );
         let key = if symmetric && x > y {
-            Key::Binary(f, y, x)
+            StepKey::Binary(f, y, x)
         } else {
-            Key::Binary(f, x, y)
+            StepKey::Binary(f, x, y)
         };
         if let Some(&known) = self.known.get(&key) {
             return known;
         }
-        let step = self.push(Step::Binary(f, x, y));
+        let step = self.push(FormulaStep::Binary(f, x, y));
         self.known.insert(key, step);
         step
     }
@@ -411,7 +415,7 @@ impl State {
     /// `x` to a whole power, by squaring: a number below 0 has one too. (The logarithm that other powers go by has no value
     /// there.)
     fn power(&mut self, x: u32, n: i32) -> u32 {
-        if let Step::Constant(base) = self.steps[x as usize] {
+        if let FormulaStep::Constant(base) = self.steps[x as usize] {
             return self.folded(base.powi(n), |_| format!("pow({}, {n})", number(base)));
         }
         let Some(top) = n.unsigned_abs().checked_ilog2() else {
@@ -439,8 +443,8 @@ impl State {
         let (mut waiting, mut roots) = (vec![x], Vec::new());
         while let Some(x) = waiting.pop() {
             match self.steps[x as usize] {
-                Step::Unary(Unary::Square, root) => roots.push(root),
-                Step::Binary(Binary::Add, x, y) => waiting.extend([y, x]),
+                FormulaStep::Unary(Unary::Square, root) => roots.push(root),
+                FormulaStep::Binary(Binary::Add, x, y) => waiting.extend([y, x]),
                 _ => return None,
             }
             if roots.len() + waiting.len() > MOST {
@@ -621,7 +625,7 @@ impl Expression {
     pub fn as_constant(&self) -> Option<f64> {
         match (self.steps(), self.builder.state()) {
             (&[step], state) => match state.steps[step as usize] {
-                Step::Constant(c) => Some(c),
+                FormulaStep::Constant(c) => Some(c),
                 _ => None,
             },
             _ => None,

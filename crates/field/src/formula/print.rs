@@ -1,6 +1,6 @@
 //! Steps as text, for messages.
 
-use super::{Binary, Step, Unary};
+use super::{Binary, FormulaStep, Unary};
 
 /// Longest text of a step; what does not fit is left out.
 const LONGEST: usize = 72;
@@ -17,7 +17,7 @@ enum Tie {
 }
 
 /// A step in the way that a person would write it, shortened.
-pub(crate) fn text(steps: &[Step], step: u32) -> String {
+pub(crate) fn text(steps: &[FormulaStep], step: u32) -> String {
     // the deepest nesting that fits
     (1..=DEEPEST)
         .rev()
@@ -27,19 +27,19 @@ pub(crate) fn text(steps: &[Step], step: u32) -> String {
 }
 
 /// `None` where it is longer than any text that is wanted.
-fn write(steps: &[Step], step: u32, depth: u32, within: Tie) -> Option<String> {
+fn write(steps: &[FormulaStep], step: u32, depth: u32, within: Tie) -> Option<String> {
     let operand = |i: u32, tie: Tie| write(steps, i, depth - 1, tie);
     let text = match steps[step as usize] {
-        Step::Coordinate(k) => ["x", "y", "z"][usize::from(k)].into(),
-        Step::Constant(c) => number(c),
+        FormulaStep::Coordinate(k) => ["x", "y", "z"][usize::from(k)].into(),
+        FormulaStep::Constant(c) => number(c),
         _ if depth == 0 => "...".into(),
-        Step::Unary(Unary::Neg, x) => format!("-{}", operand(x, Tie::Whole)?),
-        Step::Unary(Unary::Square, x) => {
+        FormulaStep::Unary(Unary::Neg, x) => format!("-{}", operand(x, Tie::Whole)?),
+        FormulaStep::Unary(Unary::Square, x) => {
             let x = operand(x, Tie::Product)?;
             enclosed(format!("{x} * {x}"), Tie::Product, within)
         }
-        Step::Unary(f, x) => format!("{}({})", unary(f), operand(x, Tie::Sum)?),
-        Step::Binary(f, x, y) => match f {
+        FormulaStep::Unary(f, x) => format!("{}({})", unary(f), operand(x, Tie::Sum)?),
+        FormulaStep::Binary(f, x, y) => match f {
             Binary::Add => enclosed(
                 format!("{} + {}", operand(x, Tie::Sum)?, operand(y, Tie::Sum)?),
                 Tie::Sum,

@@ -1,7 +1,7 @@
 //! Powers and logarithms: whether what they are of can be negative.
 
-use super::{Budget, Cause, Cell, Obstacle, ProofError, Tape};
-use crate::formula::{Binary, Step, Unary};
+use super::{Budget, Cause, Cell, Obstacle, ProofError, ProofTape};
+use crate::formula::{Binary, FormulaStep, Unary};
 use std::collections::VecDeque;
 use zeroset_catalogue::bounds::Aabb;
 use zeroset_number::{F64, v3};
@@ -19,10 +19,12 @@ const SMALLEST: f64 = 1.0 / 65536.0;
 ///
 /// # Errors
 /// A base that is negative somewhere, or that could not be shown not to be within the budget.
-pub(crate) fn bases(tape: &Tape, bounds: &Aabb, budget: &Budget) -> Result<(), ProofError> {
+pub(crate) fn bases(tape: &ProofTape, bounds: &Aabb, budget: &Budget) -> Result<(), ProofError> {
     let steps = tape.steps();
-    let of = |step: &Step| match *step {
-        Step::Binary(Binary::Pow, base, _) | Step::Unary(Unary::Ln, base) => Some(base as usize),
+    let of = |step: &FormulaStep| match *step {
+        FormulaStep::Binary(Binary::Pow, base, _) | FormulaStep::Unary(Unary::Ln, base) => {
+            Some(base as usize)
+        }
         _ => None,
     };
     let all: Vec<(usize, usize)> = (steps.iter().enumerate())
@@ -74,7 +76,7 @@ pub(crate) fn bases(tape: &Tape, bounds: &Aabb, budget: &Budget) -> Result<(), P
 }
 
 fn refused(
-    tape: &Tape,
+    tape: &ProofTape,
     jets: &[super::Jet],
     (step, base): (usize, usize),
     cell: &Cell,

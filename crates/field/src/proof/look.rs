@@ -1,13 +1,13 @@
 //! Looking at a formula in places: where it is steep, where its box cuts it, how far its solid reaches.
 
 use super::search::Waiting;
-use super::{Budget, Cell, Tape};
+use super::{Budget, Cell, ProofTape};
 use std::collections::BinaryHeap;
 use zeroset_catalogue::bounds::Aabb;
 use zeroset_number::{Dual, F64, v3};
 
 /// Length of the gradient at a point; 0 where it has none.
-pub(super) fn gradient(tape: &Tape, [x, y, z]: [f64; 3], duals: &mut Vec<Dual<F64>>) -> f64 {
+pub(super) fn gradient(tape: &ProofTape, [x, y, z]: [f64; 3], duals: &mut Vec<Dual<F64>>) -> f64 {
     let Dual { v, d } = tape.eval(Dual::point(v3(F64(x), F64(y), F64(z))), duals);
     let length = d.iter().map(|d| d.0 * d.0).sum::<f64>().sqrt();
     if v.0.is_finite() && length.is_finite() {
@@ -18,7 +18,7 @@ pub(super) fn gradient(tape: &Tape, [x, y, z]: [f64; 3], duals: &mut Vec<Dual<F6
 }
 
 /// The longest gradient in some places of the box.
-pub(crate) fn sample(tape: &Tape, bounds: &Aabb) -> (f64, [f64; 3]) {
+pub(crate) fn sample(tape: &ProofTape, bounds: &Aabb) -> (f64, [f64; 3]) {
     const LOOKS: f64 = 8e6;
     // fewer places of a long formula, so that looking takes no longer than the proof
     let side = ((LOOKS / tape.steps().len() as f64).cbrt() as usize).clamp(2, 8);
@@ -41,7 +41,12 @@ pub(crate) fn sample(tape: &Tape, bounds: &Aabb) -> (f64, [f64; 3]) {
 
 /// A point of the box's side where the formula is below zero by more than a hair, if there is one that can be found: the
 /// lowest part of the side is cut until it is known to be above.
-pub(crate) fn cut(tape: &Tape, bounds: &Aabb, slope: f64, budget: &Budget) -> Option<[f64; 3]> {
+pub(crate) fn cut(
+    tape: &ProofTape,
+    bounds: &Aabb,
+    slope: f64,
+    budget: &Budget,
+) -> Option<[f64; 3]> {
     let whole = Cell::of(bounds);
     let hair = 1e-6 * slope * whole.longest();
     let (mut jets, mut values) = (Vec::new(), Vec::new());

@@ -2,9 +2,9 @@
 
 use super::jet::Jet;
 use super::place;
-use super::tape::{Cell, Tape};
+use super::tape::{Cell, ProofTape};
 use crate::formula::print::{number, text};
-use crate::formula::{Binary, Step, Unary};
+use crate::formula::{Binary, FormulaStep, Unary};
 use std::fmt;
 use zeroset_catalogue::bounds::Aabb;
 
@@ -26,7 +26,7 @@ pub enum Cause {
     /// Takes the tangent of an angle that may be a right one.
     Tangent,
     /// Jumps, as whole numbers do.
-    Step,
+    FormulaStep,
     /// Takes the angle of a point that may be the origin.
     Origin,
     /// Jumps by a full turn.
@@ -56,7 +56,7 @@ pub struct Obstacle {
 impl Obstacle {
     /// What is wrong with a step that has no bound although its operands have, over a cell.
     pub(super) fn new(
-        tape: &Tape,
+        tape: &ProofTape,
         jets: &[Jet],
         step: usize,
         cell: &Cell,
@@ -64,13 +64,15 @@ impl Obstacle {
     ) -> Obstacle {
         let steps = tape.steps();
         let jet = |i: u32| &jets[i as usize];
-        let is_angle = |i: usize| matches!(steps[i], Step::Binary(Binary::Atan2, ..));
+        let is_angle = |i: usize| matches!(steps[i], FormulaStep::Binary(Binary::Atan2, ..));
         let turned = steps[step].operands().any(|i| jet(i).turned);
         let (cause, step, operand) = match steps[step] {
-            Step::Binary(Binary::Atan2, y, x) if holds_zero(jet(x)) && holds_zero(jet(y)) => {
+            FormulaStep::Binary(Binary::Atan2, y, x)
+                if holds_zero(jet(x)) && holds_zero(jet(y)) =>
+            {
                 (Cause::Origin, step, y)
             }
-            Step::Binary(Binary::Atan2, y, _) => (Cause::Turn, step, y),
+            FormulaStep::Binary(Binary::Atan2, y, _) => (Cause::Turn, step, y),
             _ if turned => {
                 // told of where it comes from
                 let angle = (0..step)
@@ -83,16 +85,16 @@ impl Obstacle {
                     steps[angle].operands().next().unwrap_or_default(),
                 )
             }
-            Step::Binary(Binary::Div | Binary::Modulo, _, y) if holds_zero(jet(y)) => {
+            FormulaStep::Binary(Binary::Div | Binary::Modulo, _, y) if holds_zero(jet(y)) => {
                 (Cause::Division, step, y)
             }
-            Step::Binary(Binary::Modulo, x, _) => (Cause::Step, step, x),
-            Step::Binary(Binary::Pow, x, _) => (Cause::Power, step, x),
-            Step::Unary(Unary::Floor, x) => (Cause::Step, step, x),
-            Step::Unary(Unary::Sqrt, x) => (Cause::Root, step, x),
-            Step::Unary(Unary::Ln, x) => (Cause::Logarithm, step, x),
-            Step::Unary(Unary::Asin | Unary::Acos, x) => (Cause::Arc, step, x),
-            Step::Unary(Unary::Tan, x) => (Cause::Tangent, step, x),
+            FormulaStep::Binary(Binary::Modulo, x, _) => (Cause::FormulaStep, step, x),
+            FormulaStep::Binary(Binary::Pow, x, _) => (Cause::Power, step, x),
+            FormulaStep::Unary(Unary::Floor, x) => (Cause::FormulaStep, step, x),
+            FormulaStep::Unary(Unary::Sqrt, x) => (Cause::Root, step, x),
+            FormulaStep::Unary(Unary::Ln, x) => (Cause::Logarithm, step, x),
+            FormulaStep::Unary(Unary::Asin | Unary::Acos, x) => (Cause::Arc, step, x),
+            FormulaStep::Unary(Unary::Tan, x) => (Cause::Tangent, step, x),
             _ => (Cause::Overflow, step, step as u32),
         };
         Obstacle::of(tape, jets, (cause, step, operand), cell, certain)
@@ -100,7 +102,7 @@ impl Obstacle {
 
     /// That a step does something that its operand does not allow, over a cell.
     pub(super) fn of(
-        tape: &Tape,
+        tape: &ProofTape,
         jets: &[Jet],
         (cause, step, operand): (Cause, usize, u32),
         cell: &Cell,
@@ -154,7 +156,9 @@ impl fmt::Display for Obstacle {
             )?,
             Cause::Arc => write!(f, "`{e}` is infinitely steep where `{x}` is -1 or 1")?,
             Cause::Tangent => write!(f, "`{e}` is infinite at an angle of 90 degrees")?,
-            Cause::Step => write!(f, "`{e}` jumps (copies are better made with repeat(...))")?,
+            Cause::FormulaStep => {
+                write!(f, "`{e}` jumps (copies are better made with repeat(...))")?
+            }
             Cause::Origin => write!(f, "`{e}` turns infinitely fast where both are 0")?,
             Cause::Turn => write!(
                 f,

@@ -1,7 +1,7 @@
 //! The search for the largest slope in a box.
 
 use super::look::gradient;
-use super::{Budget, Cell, Jet, Obstacle, ProofError, Tape};
+use super::{Budget, Cell, Jet, Obstacle, ProofError, ProofTape};
 use crate::formula::STEEPEST;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -57,7 +57,7 @@ impl Ord for Waiting {
 const SMALLEST: f64 = 1.0 / 16384.0;
 
 struct Search<'t> {
-    tape: &'t Tape,
+    tape: &'t ProofTape,
     bounds: Cell,
     jets: Vec<Jet>,
     duals: Vec<Dual<F64>>,
@@ -68,7 +68,7 @@ struct Search<'t> {
 
 /// The slope over the box, by branch and bound: the cell with the largest bound is cut until the bound is close to a
 /// gradient that was found.
-pub(crate) fn slope(tape: &Tape, bounds: &Aabb, budget: &Budget) -> Result<Slope, ProofError> {
+pub(crate) fn slope(tape: &ProofTape, bounds: &Aabb, budget: &Budget) -> Result<Slope, ProofError> {
     let whole = Cell::of(bounds);
     let mut search = Search {
         tape,

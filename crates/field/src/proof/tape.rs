@@ -1,7 +1,7 @@
 //! A formula as the proof runs it.
 
 use super::jet::Jet;
-use crate::formula::{Binary, Step, Steps, Unary};
+use crate::formula::{Binary, FormulaStep, Steps, Unary};
 use zeroset_catalogue::bounds::Aabb;
 use zeroset_number::{Interval, Real, Slope, Vec3, v3};
 
@@ -97,8 +97,8 @@ enum Passing {
 
 /// Steps with what is known of them wherever they are evaluated.
 #[derive(Debug)]
-pub(crate) struct Tape {
-    steps: Vec<Step>,
+pub(crate) struct ProofTape {
+    steps: Vec<FormulaStep>,
     /// For every step, the coordinates that it depends on, as bits.
     reach: Vec<u8>,
     passing: Vec<Passing>,
@@ -109,8 +109,8 @@ pub(crate) struct Tape {
 /// Whether a step is `length(max(a, 0), max(b, 0), ...) + min(max(a, b, ...), 0)`, as in the distance to a box from its
 /// faces: inside all faces the first term is 0, elsewhere the second. Bounds on the two would be added otherwise, in every
 /// box that holds a piece of the surface, however small.
-fn is_exclusive(steps: &[Step], step: usize) -> bool {
-    let Step::Binary(Binary::Add, x, y) = steps[step] else {
+fn is_exclusive(steps: &[FormulaStep], step: usize) -> bool {
+    let FormulaStep::Binary(Binary::Add, x, y) = steps[step] else {
         return false;
     };
     [(x, y), (y, x)].into_iter().any(|(length, inside)| {
@@ -126,23 +126,23 @@ fn is_exclusive(steps: &[Step], step: usize) -> bool {
 }
 
 /// The other operand of `f`, where one is the constant 0.
-fn beside_zero(steps: &[Step], f: Binary, step: u32) -> Option<u32> {
-    let zero = |i: u32| steps[i as usize] == Step::Constant(0.0);
+fn beside_zero(steps: &[FormulaStep], f: Binary, step: u32) -> Option<u32> {
+    let zero = |i: u32| steps[i as usize] == FormulaStep::Constant(0.0);
     match steps[step as usize] {
-        Step::Binary(g, x, y) if f == g && zero(y) => Some(x),
-        Step::Binary(g, x, y) if f == g && zero(x) => Some(y),
+        FormulaStep::Binary(g, x, y) if f == g && zero(y) => Some(x),
+        FormulaStep::Binary(g, x, y) if f == g && zero(x) => Some(y),
         _ => None,
     }
 }
 
 /// What a nest of one function is made of, as far as it is of any use to look.
-fn leaves(steps: &[Step], f: Binary, step: u32) -> Vec<u32> {
+fn leaves(steps: &[FormulaStep], f: Binary, step: u32) -> Vec<u32> {
     const ENOUGH: usize = 16;
     // not by recursion: a nest may be as deep as the formula is long
     let (mut waiting, mut found) = (vec![step], Vec::new());
     while let Some(step) = waiting.pop() {
         match steps[step as usize] {
-            Step::Binary(g, x, y) if f == g && found.len() + waiting.len() < ENOUGH => {
+            FormulaStep::Binary(g, x, y) if f == g && found.len() + waiting.len() < ENOUGH => {
                 waiting.extend([y, x]);
             }
             _ => found.push(step),
@@ -151,22 +151,22 @@ fn leaves(steps: &[Step], f: Binary, step: u32) -> Vec<u32> {
     found
 }
 
-impl Tape {
-    pub(crate) fn new(steps: &Steps) -> Tape {
+impl ProofTape {
+    pub(crate) fn new(steps: &Steps) -> ProofTape {
         let steps = steps.list().to_vec();
         let mut reach: Vec<u8> = Vec::with_capacity(steps.len());
         let mut turns: Vec<Turns> = Vec::with_capacity(steps.len());
         let mut passing = Vec::with_capacity(steps.len());
         let constant = |i: u32| match steps[i as usize] {
-            Step::Constant(c) => Some(c),
+            FormulaStep::Constant(c) => Some(c),
             _ => None,
         };
         for step in &steps {
             let operand = |i: u32| turns[i as usize];
             let (bits, after, pass) = match *step {
-                Step::Coordinate(k) => (1 << k, Turns::None, Passing::On),
-                Step::Constant(_) => (0, Turns::None, Passing::On),
-                Step::Unary(f, x) => {
+                FormulaStep::Coordinate(k) => (1 << k, Turns::None, Passing::On),
+                FormulaStep::Constant(_) => (0, Turns::None, Passing::On),
+                FormulaStep::Unary(f, x) => {
                     let before = operand(x);
                     let (after, pass) = match f {
                         _ if before == Turns::None => (Turns::None, Passing::On),
@@ -179,7 +179,7 @@ impl Tape {
                     };
                     (reach[x as usize], after, pass)
                 }
-                Step::Binary(f, x, y) => {
+                FormulaStep::Binary(f, x, y) => {
                     let (a, b) = (operand(x), operand(y));
                     let after = match f {
                         Binary::Atan2 if (a, b) == (Turns::None, Turns::None) => Turns::Of(1.0),
@@ -205,7 +205,7 @@ impl Tape {
         let exclusive = (0..steps.len())
             .map(|step| is_exclusive(&steps, step))
             .collect();
-        Tape {
+        ProofTape {
             steps,
             reach,
             passing,
@@ -213,7 +213,7 @@ impl Tape {
         }
     }
 
-    pub(crate) fn steps(&self) -> &[Step] {
+    pub(crate) fn steps(&self) -> &[FormulaStep] {
         &self.steps
     }
 
@@ -249,15 +249,15 @@ impl Tape {
     fn jet(&self, step: usize, point: &[Slope; 3], known: &[Jet]) -> Jet {
         let operand = |i: u32| &known[i as usize];
         let (mut jet, turned) = match self.steps[step] {
-            Step::Coordinate(k) => return Jet::coordinate(point[usize::from(k)]),
-            Step::Constant(c) => return Jet::constant(c),
-            Step::Unary(f, x) => (Jet::unary(f, operand(x)), operand(x).turned),
-            Step::Binary(_, x, y) if self.exclusive[step] => {
+            FormulaStep::Coordinate(k) => return Jet::coordinate(point[usize::from(k)]),
+            FormulaStep::Constant(c) => return Jet::constant(c),
+            FormulaStep::Unary(f, x) => (Jet::unary(f, operand(x)), operand(x).turned),
+            FormulaStep::Binary(_, x, y) if self.exclusive[step] => {
                 let (x, y) = (operand(x), operand(y));
                 (Jet::either(x, y), x.turned || y.turned)
             }
-            Step::Binary(f, x, y) => {
-                let exponent = matches!(self.steps[y as usize], Step::Constant(_));
+            FormulaStep::Binary(f, x, y) => {
+                let exponent = matches!(self.steps[y as usize], FormulaStep::Constant(_));
                 let turned = operand(x).turned || operand(y).turned;
                 (Jet::binary(f, operand(x), operand(y), exponent), turned)
             }

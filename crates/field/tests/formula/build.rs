@@ -2,7 +2,8 @@
 
 use super::steps;
 use zeroset_field::formula::{
-    Binary, BuildError, Builder, Expression, MAX_STEPS, Step, Steps, StepsError, Unary, functions,
+    Binary, BuildError, Builder, Expression, FormulaStep, MAX_STEPS, Steps, StepsError, Unary,
+    functions,
 };
 use zeroset_number::{F64, v3};
 
@@ -62,7 +63,7 @@ fn equal_steps_are_written_once_and_needless_ones_not_at_all() {
     });
     // x, y, their product, its sine, and twice that
     assert_eq!(list.list().len(), 5);
-    assert_eq!(steps(|p| p.y()).list(), [Step::Coordinate(1)]);
+    assert_eq!(steps(|p| p.y()).list(), [FormulaStep::Coordinate(1)]);
 }
 
 #[test]
@@ -74,9 +75,9 @@ fn the_root_of_a_sum_of_squares_is_a_length() {
 
 #[test]
 fn constants_are_parameters_and_do_not_change_the_structure() {
-    let shape = |list: &Steps| -> Vec<Step> {
-        let unnamed = |step: &Step| match step {
-            Step::Constant(_) => Step::Constant(0.0),
+    let shape = |list: &Steps| -> Vec<FormulaStep> {
+        let unnamed = |step: &FormulaStep| match step {
+            FormulaStep::Constant(_) => FormulaStep::Constant(0.0),
             other => *other,
         };
         list.list().iter().map(unnamed).collect()
@@ -105,9 +106,9 @@ fn functions_of_constants_are_constants() {
     assert_eq!(
         list.list(),
         [
-            Step::Coordinate(0),
-            Step::Constant(2.0 + 2_f64.sin()),
-            Step::Binary(Binary::Mul, 0, 1)
+            FormulaStep::Coordinate(0),
+            FormulaStep::Constant(2.0 + 2_f64.sin()),
+            FormulaStep::Binary(Binary::Mul, 0, 1)
         ]
     );
 }
@@ -185,24 +186,27 @@ fn steps_are_limited() {
 
 #[test]
 fn lists_of_steps_are_checked() {
-    let fails = |list: &[Step]| Steps::new(list.to_vec()).unwrap_err();
+    let fails = |list: &[FormulaStep]| Steps::new(list.to_vec()).unwrap_err();
     assert_eq!(fails(&[]), StepsError::Empty);
     assert_eq!(
-        fails(&[Step::Coordinate(0), Step::Unary(Unary::Sin, 1)]),
+        fails(&[
+            FormulaStep::Coordinate(0),
+            FormulaStep::Unary(Unary::Sin, 1)
+        ]),
         StepsError::Operand {
             step: 1,
             operand: 1
         }
     );
     assert_eq!(
-        fails(&[Step::Coordinate(3)]),
+        fails(&[FormulaStep::Coordinate(3)]),
         StepsError::Coordinate { step: 0, axis: 3 }
     );
     assert!(matches!(
-        fails(&[Step::Constant(f64::INFINITY)]),
+        fails(&[FormulaStep::Constant(f64::INFINITY)]),
         StepsError::Constant { .. }
     ));
-    let long = vec![Step::Coordinate(0); MAX_STEPS + 1];
+    let long = vec![FormulaStep::Coordinate(0); MAX_STEPS + 1];
     assert!(matches!(fails(&long), StepsError::TooMany { .. }));
 }
 

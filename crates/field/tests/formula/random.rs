@@ -5,25 +5,25 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use zeroset_catalogue::bounds::Aabb;
-use zeroset_field::formula::{Binary, Budget, Formula, ProofError, Step, Steps, Unary};
+use zeroset_field::formula::{Binary, Budget, Formula, FormulaStep, ProofError, Steps, Unary};
 use zeroset_number::{Dual, F64, Interval, v3};
 
 /// A step from four numbers, whatever they are: operands are earlier steps, mostly the latest.
-fn step(at: usize, [kind, a, b]: [u32; 3], constant: f64) -> Step {
+fn step(at: usize, [kind, a, b]: [u32; 3], constant: f64) -> FormulaStep {
     let operand = |x: u32| {
         let back = 1 + x % 97 % 5 % at as u32;
         at as u32 - back
     };
     match kind % 16 {
-        0 => Step::Coordinate((a % 3) as u8),
-        1 | 2 => Step::Constant(constant),
+        0 => FormulaStep::Coordinate((a % 3) as u8),
+        1 | 2 => FormulaStep::Constant(constant),
         k @ 3..=8 => {
             let _ = k;
-            Step::Unary(Unary::ALL[a as usize % Unary::ALL.len()], operand(b))
+            FormulaStep::Unary(Unary::ALL[a as usize % Unary::ALL.len()], operand(b))
         }
         _ => {
             let f = Binary::ALL[kind as usize / 16 % Binary::ALL.len()];
-            Step::Binary(f, operand(a), operand(b))
+            FormulaStep::Binary(f, operand(a), operand(b))
         }
     }
 }
@@ -41,9 +41,9 @@ fn formulas() -> impl Strategy<Value = Steps> {
         "a power of a negative constant",
         |list| {
             let mut steps = vec![
-                Step::Coordinate(0),
-                Step::Coordinate(1),
-                Step::Coordinate(2),
+                FormulaStep::Coordinate(0),
+                FormulaStep::Coordinate(1),
+                FormulaStep::Coordinate(2),
             ];
             for (numbers, constant) in list {
                 steps.push(step(steps.len(), numbers, constant));

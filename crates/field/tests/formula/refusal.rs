@@ -64,13 +64,15 @@ fn every_obstacle_is_named_with_its_place() {
         x(std::f64::consts::FRAC_PI_2),
         |p| p.x().abs().tan() + p.y(),
     );
-    refused(2.0, Cause::Step, "floor(x)", [None; 3], |p| p.x().floor());
-    refused(2.0, Cause::Step, "mod(x, 0.7)", [None; 3], |p| {
+    refused(2.0, Cause::FormulaStep, "floor(x)", [None; 3], |p| {
+        p.x().floor()
+    });
+    refused(2.0, Cause::FormulaStep, "mod(x, 0.7)", [None; 3], |p| {
         p.x().modulo(0.7) - 0.2
     });
     refused(
         2.0,
-        Cause::Step,
+        Cause::FormulaStep,
         "floor(min(max(y, -0.5), 0.5))",
         [None, Some(0.0), None],
         |p| p.y().sign(),

@@ -1,9 +1,9 @@
 //! Formulas in JSON: a list of steps, each a number, a coordinate, or a function of earlier steps.
 
-use super::{Problem, Read, Step as Member, problem};
+use super::{JsonStep, Problem, Read, problem};
 use serde_json::{Map, Value, json};
 use zeroset_catalogue::bounds::Aabb;
-use zeroset_field::formula::{Binary, Budget, Formula, Step, Steps, Unary};
+use zeroset_field::formula::{Binary, Budget, Formula, FormulaStep, Steps, Unary};
 
 /// Names of functions of one step.
 const UNARY: &[(&str, Unary)] = &[
@@ -49,10 +49,10 @@ fn name_of<T: PartialEq>(table: &[(&'static str, T)], what: &T) -> &'static str 
 /// A formula with its box and its slope.
 pub(super) fn write(formula: &Formula) -> Map<String, Value> {
     let steps = formula.steps().iter().map(|step| match step {
-        Step::Constant(x) => json!(x),
-        Step::Coordinate(k) => json!(COORDINATES.get(usize::from(*k))),
-        Step::Unary(f, a) => json!([name_of(UNARY, f), a]),
-        Step::Binary(f, a, b) => json!([name_of(BINARY, f), a, b]),
+        FormulaStep::Constant(x) => json!(x),
+        FormulaStep::Coordinate(k) => json!(COORDINATES.get(usize::from(*k))),
+        FormulaStep::Unary(f, a) => json!([name_of(UNARY, f), a]),
+        FormulaStep::Binary(f, a, b) => json!([name_of(BINARY, f), a, b]),
     });
     let mut body = Map::new();
     body.insert("steps".into(), steps.collect());
@@ -69,12 +69,12 @@ pub(super) fn write(formula: &Formula) -> Map<String, Value> {
 pub(super) fn read(body: &Map<String, Value>) -> Read<Formula> {
     let steps = body.get("steps").and_then(Value::as_array);
     let steps = steps.ok_or_else(|| problem("a formula needs `steps`, a list"))?;
-    let each = |(i, v)| step(v).map_err(|p| p.within(Member::Index(i)).at("steps"));
+    let each = |(i, v)| step(v).map_err(|p| p.within(JsonStep::Index(i)).at("steps"));
     let steps = steps
         .iter()
         .enumerate()
         .map(each)
-        .collect::<Read<Vec<Step>>>()?;
+        .collect::<Read<Vec<FormulaStep>>>()?;
     let steps = Steps::new(steps).map_err(|e| problem(e.to_string()).at("steps"))?;
     let corner = |v: Option<&Value>| {
         let items = v
@@ -101,32 +101,31 @@ pub(super) fn read(body: &Map<String, Value>) -> Read<Formula> {
     formula.map_err(|e| problem(e.to_string()))
 }
 
-fn step(value: &Value) -> Read<Step> {
+fn step(value: &Value) -> Read<FormulaStep> {
     let unknown = || -> Box<Problem> {
         problem(
             "a step is a number, \"x\", \"y\", \"z\", or a function of earlier steps such as [\"sin\", 0] or [\"add\", 0, 1]",
         )
     };
     if let Some(x) = value.as_f64() {
-        return Ok(Step::Constant(x));
+        return Ok(FormulaStep::Constant(x));
     }
     if let Some(name) = value.as_str() {
         let k = COORDINATES
             .iter()
             .position(|c| *c == name)
             .ok_or_else(unknown)?;
-        return Ok(Step::Coordinate(k as u8));
+        return Ok(FormulaStep::Coordinate(k as u8));
     }
     let items = value.as_array().ok_or_else(unknown)?;
     let operand = |v: &Value| v.as_u64().and_then(|n| u32::try_from(n).ok());
     let name = items.first().and_then(Value::as_str).ok_or_else(unknown)?;
     let step = match items[1..] {
-        [ref a] => {
-            (UNARY.iter().find(|f| f.0 == name)).and_then(|f| Some(Step::Unary(f.1, operand(a)?)))
-        }
+        [ref a] => (UNARY.iter().find(|f| f.0 == name))
+            .and_then(|f| Some(FormulaStep::Unary(f.1, operand(a)?))),
         [ref a, ref b] => {
             let found = BINARY.iter().find(|f| f.0 == name);
-            found.and_then(|f| Some(Step::Binary(f.1, operand(a)?, operand(b)?)))
+            found.and_then(|f| Some(FormulaStep::Binary(f.1, operand(a)?, operand(b)?)))
         }
         _ => None,
     };

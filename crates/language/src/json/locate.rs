@@ -1,10 +1,10 @@
 //! Where in a JSON text values stand. Every question takes one pass over the text.
 
-use super::Step;
+use super::JsonStep;
 use std::ops::Range;
 
 /// The bytes of the value at the end of a path, or of the last one on the way that is there. The text must be JSON.
-pub(super) fn locate(text: &str, path: &[Step]) -> Range<usize> {
+pub(super) fn locate(text: &str, path: &[JsonStep]) -> Range<usize> {
     let mut scanner = Scanner::new(text);
     scanner.space();
     for step in path {
@@ -21,7 +21,7 @@ pub(super) fn locate(text: &str, path: &[Step]) -> Range<usize> {
 pub(super) fn items(text: &str, key: &str) -> Vec<u32> {
     let mut scanner = Scanner::new(text);
     let mut starts = Vec::new();
-    if !scanner.enter(&Step::Key(key.to_string())) || scanner.peek() != b'[' {
+    if !scanner.enter(&JsonStep::Key(key.to_string())) || scanner.peek() != b'[' {
         return starts;
     }
     scanner.at += 1;
@@ -114,11 +114,11 @@ impl Scanner<'_> {
     }
 
     /// Goes to the beginning of a member of the value that begins here, if there is such a member.
-    fn enter(&mut self, step: &Step) -> bool {
+    fn enter(&mut self, step: &JsonStep) -> bool {
         self.space();
         let open = match step {
-            Step::Key(_) => b'{',
-            Step::Index(_) => b'[',
+            JsonStep::Key(_) => b'{',
+            JsonStep::Index(_) => b'[',
         };
         if self.peek() != open {
             return false;
@@ -127,7 +127,7 @@ impl Scanner<'_> {
         let mut index = 0;
         while self.has_more() {
             let hit = match step {
-                Step::Key(wanted) => {
+                JsonStep::Key(wanted) => {
                     let name = self.string();
                     // most keys are plain, and need not be decoded to be told apart
                     let plain = name.len() == wanted.len() + 2
@@ -139,7 +139,7 @@ impl Scanner<'_> {
                     self.at += 1;
                     hit
                 }
-                Step::Index(wanted) => index == *wanted,
+                JsonStep::Index(wanted) => index == *wanted,
             };
             self.space();
             if hit {
@@ -156,22 +156,22 @@ impl Scanner<'_> {
 mod tests {
     use super::*;
 
-    fn key(k: &str) -> Step {
-        Step::Key(k.to_string())
+    fn key(k: &str) -> JsonStep {
+        JsonStep::Key(k.to_string())
     }
 
     #[test]
     fn finds_values() {
         let text = r#" {"a": [1, {"b\"": "x,]"}, 22], "c": -1.5e3 } "#;
-        let at = |path: &[Step]| &text[locate(text, path)];
+        let at = |path: &[JsonStep]| &text[locate(text, path)];
         assert_eq!(at(&[key("c")]), "-1.5e3");
-        assert_eq!(at(&[key("a"), Step::Index(2)]), "22");
-        assert_eq!(at(&[key("a"), Step::Index(1), key("b\"")]), "\"x,]\"");
+        assert_eq!(at(&[key("a"), JsonStep::Index(2)]), "22");
+        assert_eq!(at(&[key("a"), JsonStep::Index(1), key("b\"")]), "\"x,]\"");
         assert_eq!(
-            at(&[key("a"), Step::Index(7)]),
+            at(&[key("a"), JsonStep::Index(7)]),
             r#"[1, {"b\"": "x,]"}, 22]"#
         );
-        assert_eq!(at(&[key("a"), Step::Index(0), key("z")]), "1");
+        assert_eq!(at(&[key("a"), JsonStep::Index(0), key("z")]), "1");
         assert_eq!(at(&[]), text.trim());
     }
 
@@ -202,7 +202,7 @@ mod tests {
             "{,,",
             "{\"a\":[,,",
         ] {
-            let range = locate(text, &[Step::Key("a".into()), Step::Index(1)]);
+            let range = locate(text, &[JsonStep::Key("a".into()), JsonStep::Index(1)]);
             assert!(range.end <= text.len());
             items(text, "a");
         }

@@ -37,7 +37,7 @@ const VERSION: u64 = 1;
 
 /// A step from a JSON value to a member.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Step {
+pub(crate) enum JsonStep {
     Key(String),
     Index(usize),
 }
@@ -47,7 +47,7 @@ pub(crate) enum Step {
 pub(crate) struct Problem {
     message: String,
     help: Option<String>,
-    path: Vec<Step>,
+    path: Vec<JsonStep>,
 }
 
 /// Characters of a key, and of a path of keys, in a message.
@@ -76,14 +76,14 @@ impl Problem {
     }
 
     /// Inside of a member.
-    fn within(mut self: Box<Self>, step: Step) -> Box<Self> {
+    fn within(mut self: Box<Self>, step: JsonStep) -> Box<Self> {
         self.path.insert(0, step);
         self
     }
 
     /// Inside of a member of an object.
     fn at(self: Box<Self>, key: &str) -> Box<Self> {
-        self.within(Step::Key(key.to_string()))
+        self.within(JsonStep::Key(key.to_string()))
     }
 
     /// What is wrong, and of what.
@@ -91,11 +91,11 @@ impl Problem {
         let mut path = String::new();
         for step in &self.path {
             match step {
-                Step::Key(key) => {
+                JsonStep::Key(key) => {
                     let dot = if path.is_empty() { "" } else { "." };
                     path += &format!("{dot}{}", shortened(key, KEY));
                 }
-                Step::Index(i) => path += &format!("[{i}]"),
+                JsonStep::Index(i) => path += &format!("[{i}]"),
             }
         }
         if path.is_empty() {

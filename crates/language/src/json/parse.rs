@@ -1,6 +1,6 @@
 //! From text to JSON values: each is charged before it is made, and no key stands twice in an object.
 
-use crate::budget::{Budget, Spent};
+use crate::budget::{LoadBudget, Spent};
 use crate::report::{Place, Report, Source};
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Number, Value};
@@ -18,7 +18,7 @@ const TEXT: u64 = 32;
 const CLOCK: u64 = 1024;
 
 /// The value that a text says.
-pub(super) fn parse(source: &Source, budget: &mut Budget) -> Result<Value, Box<Report>> {
+pub(super) fn parse(source: &Source, budget: &mut LoadBudget) -> Result<Value, Box<Report>> {
     let mut state = State {
         budget,
         values: 0,
@@ -31,7 +31,7 @@ pub(super) fn parse(source: &Source, budget: &mut Budget) -> Result<Value, Box<R
 }
 
 struct State<'b> {
-    budget: &'b mut Budget,
+    budget: &'b mut LoadBudget,
     values: u64,
     stopped: Option<Stop>,
 }
@@ -200,7 +200,7 @@ mod tests {
     use crate::limits::Limits;
 
     fn parsed(text: &str, limits: Limits) -> Result<Value, Box<Report>> {
-        parse(&Source::new("a.json", text), &mut Budget::new(&limits))
+        parse(&Source::new("a.json", text), &mut LoadBudget::new(&limits))
     }
 
     /// What is accepted is what `serde_json` itself makes of it.

@@ -2,9 +2,9 @@
 
 use super::parse::parse;
 use super::valid;
-use super::{KEY, NAME, Problem, Read, Step, VERSION, angle_name, is_angle, problem};
-use crate::budget::Budget;
-use crate::draft::{Draft, View};
+use super::{JsonStep, KEY, NAME, Problem, Read, VERSION, angle_name, is_angle, problem};
+use crate::budget::LoadBudget;
+use crate::draft::{CameraDraft, Draft};
 use crate::framing;
 use crate::images;
 use crate::limits::Limits;
@@ -57,7 +57,7 @@ struct Reader {
     materials: usize,
     limits: Limits,
     /// For the clock; what is held is charged to that of the draft.
-    budget: Budget,
+    budget: LoadBudget,
 }
 
 /// The members of an object, none of them unknown.
@@ -123,7 +123,7 @@ fn array<T: Copy + Default, const N: usize>(
     let items = items.ok_or_else(|| problem(format!("this must be a list of {N}")))?;
     let mut out = [T::default(); N];
     for (i, (slot, item)) in out.iter_mut().zip(items).enumerate() {
-        *slot = each(item).map_err(|p| p.within(Step::Index(i)))?;
+        *slot = each(item).map_err(|p| p.within(JsonStep::Index(i)))?;
     }
     Ok(out)
 }
@@ -141,8 +141,8 @@ fn data<T: DeserializeOwned>(value: &Value) -> Read<T> {
     colours(&mut value, false)?;
     serde_path_to_error::deserialize(value).map_err(|e| {
         let path = e.path().iter().filter_map(|segment| match segment {
-            serde_path_to_error::Segment::Seq { index } => Some(Step::Index(*index)),
-            serde_path_to_error::Segment::Map { key } => Some(Step::Key(key.clone())),
+            serde_path_to_error::Segment::Seq { index } => Some(JsonStep::Index(*index)),
+            serde_path_to_error::Segment::Map { key } => Some(JsonStep::Key(key.clone())),
             _ => None,
         });
         Box::new(Problem {
@@ -170,7 +170,7 @@ fn colours(value: &mut Value, is_colour: bool) -> Read<()> {
         }
         Value::Array(items) => {
             for (i, item) in items.iter_mut().enumerate() {
-                colours(item, is_colour).map_err(|p| p.within(Step::Index(i)))?;
+                colours(item, is_colour).map_err(|p| p.within(JsonStep::Index(i)))?;
             }
         }
         Value::Object(map) => {
@@ -219,7 +219,7 @@ impl Reader {
             let each = |(i, v)| {
                 self.tick()
                     .and_then(|()| self.material(v, draft))
-                    .map_err(|p| p.within(Step::Index(i)))
+                    .map_err(|p| p.within(JsonStep::Index(i)))
             };
             items
                 .iter()
@@ -231,7 +231,7 @@ impl Reader {
         self.materials = draft.materials.len();
         member(map, "parts", |v| {
             for (i, part) in list(v, "parts")?.iter().enumerate() {
-                let field = self.field(part).map_err(|p| p.within(Step::Index(i)))?;
+                let field = self.field(part).map_err(|p| p.within(JsonStep::Index(i)))?;
                 self.parts.push(field);
             }
             Ok(())
@@ -251,7 +251,7 @@ impl Reader {
                 let (line, column) = source.position(start);
                 let place = Some((source.name.clone(), line as u32, column as u32));
                 self.object(v, i, place)
-                    .map_err(|p| p.within(Step::Index(i)))
+                    .map_err(|p| p.within(JsonStep::Index(i)))
             };
             items
                 .iter()
@@ -275,8 +275,8 @@ impl Reader {
         let lights = member(map, "lights", |v| {
             valid::count_lights(list(v, "lights")?.len())?;
             let each = |(i, v)| {
-                let light: Light = data(v).map_err(|p| p.within(Step::Index(i)))?;
-                valid::light(&light).map_err(|p| p.within(Step::Index(i)))?;
+                let light: Light = data(v).map_err(|p| p.within(JsonStep::Index(i)))?;
+                valid::light(&light).map_err(|p| p.within(JsonStep::Index(i)))?;
                 Ok(light)
             };
             list(v, "lights")?
@@ -434,7 +434,10 @@ impl Reader {
             let shapes = body.get("of").and_then(Value::as_array);
             let shapes =
                 shapes.ok_or_else(|| problem(format!("{name} needs `of`, a list of fields")))?;
-            let each = |(i, v)| self.field(v).map_err(|p| p.within(Step::Index(i)).at("of"));
+            let each = |(i, v)| {
+                self.field(v)
+                    .map_err(|p| p.within(JsonStep::Index(i)).at("of"))
+            };
             let shapes = shapes
                 .iter()
                 .enumerate()
@@ -536,7 +539,7 @@ fn rigid(rows: &[[f64; 3]; 3]) -> Read<()> {
 }
 
 /// A camera as far as it is stated.
-fn camera(value: &Value) -> Read<View> {
+fn camera(value: &Value) -> Read<CameraDraft> {
     let names = [
         "eye", "axes", "target", "up", "fov", "height", "near", "far",
     ];
@@ -574,8 +577,8 @@ fn camera(value: &Value) -> Read<View> {
             )))
         }
     };
-    let default = View::default();
-    let view = View {
+    let default = CameraDraft::default();
+    let view = CameraDraft {
         eye: member(map, "eye", point)?,
         target: member(map, "target", point)?,
         up: member(map, "up", point)?.unwrap_or(DVec3::Y),
@@ -686,11 +689,11 @@ fn parameter(param: &'static Param, value: &Value, degrees: bool, out: &mut Vec<
                     (_, Some(numbers)) if numbers.len() == width => numbers,
                     _ => {
                         return Err(problem(format!("this must be a list of {width}"))
-                            .within(Step::Index(i)));
+                            .within(JsonStep::Index(i)));
                     }
                 };
                 for x in numbers {
-                    out.push(component(x).map_err(|p| p.within(Step::Index(i)))?);
+                    out.push(component(x).map_err(|p| p.within(JsonStep::Index(i)))?);
                 }
             }
         }

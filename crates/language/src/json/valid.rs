@@ -1,23 +1,23 @@
 //! What a scene's numbers may be where it is read: the ranges of [`zeroset_scene::valid`], and limits on top of these.
 
-use super::{Problem, Read, Step, problem};
+use super::{JsonStep, Problem, Read, problem};
 use crate::draft::check_size;
 use crate::limits::Limits;
 use zeroset_scene::light::{Light, Sky};
 use zeroset_scene::material::Material;
 use zeroset_scene::scene::SceneParts;
 use zeroset_scene::settings::{Occlusion, Settings};
-use zeroset_scene::valid::{self, Check};
+use zeroset_scene::valid::{self, Checked};
 pub(super) use zeroset_scene::valid::{HEIGHT, UPRIGHT};
 
 /// The error of a scene as one of a file.
-fn read(check: Check) -> Read<()> {
+fn read(check: Checked) -> Read<()> {
     check.map_err(|e| {
         let mut p = problem(e.fault().to_string());
         p.path = (e.path().iter())
             .map(|step| match *step {
-                valid::Step::Key(key) => Step::Key(key.to_string()),
-                valid::Step::Index(i) => Step::Index(i),
+                valid::PathStep::Key(key) => JsonStep::Key(key.to_string()),
+                valid::PathStep::Index(i) => JsonStep::Index(i),
             })
             .collect();
         p
@@ -26,7 +26,7 @@ fn read(check: Check) -> Read<()> {
 
 /// The limits that numbers of a scene have beside their ranges.
 pub(crate) fn limits(scene: &SceneParts, limits: &Limits) -> Read<()> {
-    let in_list = |i: usize| move |p: Box<Problem>| p.within(Step::Index(i)).at("objects");
+    let in_list = |i: usize| move |p: Box<Problem>| p.within(JsonStep::Index(i)).at("objects");
     let named = |name: &str| limits.check_name(name).map_err(|m| problem(m).at("name"));
     named(&scene.name)?;
     for (i, object) in scene.objects.iter().enumerate() {

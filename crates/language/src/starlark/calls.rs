@@ -7,7 +7,7 @@ use super::methods;
 use super::mistake::{Run, mistake};
 use super::native::{Argument, Call, Native};
 use super::run::Flow;
-use super::value::{Key, Method, Thing, Value};
+use super::value::{DictKey, Method, Thing, Value};
 use crate::report::{Place, listing, suggestion};
 use starlark_syntax::codemap::Span;
 use starlark_syntax::syntax::ast::{ArgumentP, AstArgument, AstExpr, ExprP};
@@ -79,7 +79,7 @@ impl<'a> Machine<'a> {
                     let length = self.store.dict(dict).pairs.len();
                     self.grow_items(2 * length).map_err(|m| m.at(place))?;
                     for (key, (_, value)) in &self.store.dict(dict).pairs {
-                        let Key::Text(name) = key else {
+                        let DictKey::Text(name) = key else {
                             return Err(mistake("the keys after `**` must be texts").at(place));
                         };
                         out.push(Argument {

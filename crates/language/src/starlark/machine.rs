@@ -4,7 +4,7 @@ use super::depth::Depth;
 use super::mistake::{Run, mistake};
 use super::module::Module;
 use super::scope::Locals;
-use super::value::{Dict, Key, List, Method, Range, Store, Thing, Value};
+use super::value::{Dict, DictKey, List, Method, Range, Store, Thing, Value};
 use crate::draft::Draft;
 use crate::limits::Limits;
 use crate::report::Place;
@@ -60,7 +60,7 @@ pub(crate) enum ParamKind {
 }
 
 /// The variables of a running function or comprehension.
-pub(crate) struct Frame<'a> {
+pub(crate) struct Variables<'a> {
     pub(crate) names: Locals<'a>,
     pub(crate) values: Vec<Option<Value>>,
     pub(crate) parent: Option<u32>,
@@ -78,7 +78,7 @@ pub(crate) struct Machine<'a> {
     pub(crate) globals: Vec<HashMap<&'a str, Value>>,
     pub(crate) builtins: &'static HashMap<&'static str, Value>,
     pub(crate) functions: Vec<Function<'a>>,
-    pub(crate) frames: Vec<Frame<'a>>,
+    pub(crate) frames: Vec<Variables<'a>>,
     pub(crate) frame: Option<u32>,
     pub(crate) module: u32,
     pub(crate) calls: u64,
@@ -271,27 +271,27 @@ impl<'a> Machine<'a> {
     }
 
     /// A value by its content.
-    pub(crate) fn key(&mut self, value: Value, depth: u32) -> Run<Key> {
+    pub(crate) fn key(&mut self, value: Value, depth: u32) -> Run<DictKey> {
         self.charge(1)?;
         if depth > 16 {
             return Err(mistake("a key of a dict is nested too deeply"));
         }
         Ok(match value {
-            Value::None => Key::None,
-            Value::Bool(b) => Key::Bool(b),
-            Value::Int(i) => Key::Int(i),
+            Value::None => DictKey::None,
+            Value::Bool(b) => DictKey::Bool(b),
+            Value::Int(i) => DictKey::Int(i),
             // a whole float is the same key as the whole number, as they are equal
-            Value::Float(x) if x.fract() == 0.0 && x.abs() < 9e15 => Key::Int(x as i64),
-            Value::Float(x) => Key::Float(x.to_bits()),
+            Value::Float(x) if x.fract() == 0.0 && x.abs() < 9e15 => DictKey::Int(x as i64),
+            Value::Float(x) => DictKey::Float(x.to_bits()),
             Value::Text(i) => {
                 self.charge(self.store.text(i).len() as u64 / 16)?;
-                Key::Text(self.store.text(i).clone())
+                DictKey::Text(self.store.text(i).clone())
             }
             Value::Tuple(i) => {
                 let length = self.store.tuple(i).len();
-                self.grow(length * size_of::<Key>())?;
+                self.grow(length * size_of::<DictKey>())?;
                 let items = (0..length).map(|k| self.key(self.store.tuple(i)[k], depth + 1));
-                Key::Tuple(items.collect::<Run<Vec<Key>>>()?)
+                DictKey::Tuple(items.collect::<Run<Vec<DictKey>>>()?)
             }
             other => {
                 let kind = self.store.kind(other);
@@ -339,7 +339,7 @@ impl<'a> Machine<'a> {
             }
             f.captured = true;
             frame = f.parent;
-            let bytes = size_of::<Frame<'a>>() + f.values.len() * size_of::<Option<Value>>();
+            let bytes = size_of::<Variables<'a>>() + f.values.len() * size_of::<Option<Value>>();
             self.grow(bytes)?;
         }
         Ok(Value::Function(push(&mut self.functions, function)))
@@ -356,7 +356,7 @@ impl<'a> Machine<'a> {
         let outer = self.frame;
         let mine = push(
             &mut self.frames,
-            Frame {
+            Variables {
                 names,
                 values,
                 parent,

@@ -3,7 +3,7 @@
 use super::depth::MAX_TOKENS;
 use super::letters::Letters;
 use super::mistake::{Run, mistake};
-use super::scope::Check;
+use super::scope::NameCheck;
 use crate::limits::Limits;
 use crate::report::Place;
 use starlark_syntax::codemap::CodeMap;
@@ -78,7 +78,7 @@ pub(crate) fn parse(file: u32, name: &str, text: &str, limits: &Limits) -> Run<P
     let (_, mut statement, ..) = ast.into_parts();
     letters.restore(&mut statement);
     let builtins = super::builtins();
-    Check::module(
+    NameCheck::module(
         file,
         &statement,
         |name| builtins.contains_key(name),

@@ -64,7 +64,7 @@ fn assigned<'a>(stmt: &'a AstStmt, names: &mut Names<'a>) {
 }
 
 /// Looks for names that nothing gives a value.
-pub(crate) struct Check<'a, F> {
+pub(crate) struct NameCheck<'a, F> {
     builtin: F,
     file: u32,
     globals: Names<'a>,
@@ -72,7 +72,7 @@ pub(crate) struct Check<'a, F> {
     around: HashMap<&'a str, u32>,
 }
 
-impl<'a, F: Fn(&str) -> bool> Check<'a, F> {
+impl<'a, F: Fn(&str) -> bool> NameCheck<'a, F> {
     /// Checks a module. `builtin` knows the names that are always there, `all` lists them.
     pub(crate) fn module(
         file: u32,
@@ -82,7 +82,7 @@ impl<'a, F: Fn(&str) -> bool> Check<'a, F> {
     ) -> Run<()> {
         let mut names = Names::new();
         assigned(module, &mut names);
-        let mut check = Check {
+        let mut check = NameCheck {
             builtin,
             file,
             globals: names,

@@ -3,7 +3,7 @@
 use super::mistake::{Run, mistake};
 use super::native::{Call, Given, Native, Slot, slot};
 use super::value::{Thing, Value};
-use crate::draft::{FOV, View, unit};
+use crate::draft::{CameraDraft, FOV, unit};
 use crate::framing::axes_of;
 use glam::{DMat3, DQuat, DVec3, EulerRot, Vec3};
 use zeroset_catalogue::{Dimension, LARGE, SMALL};
@@ -246,7 +246,7 @@ fn camera(c: &mut Call<'_, '_>) -> Run<Value> {
         .get("far")
         .map(|g| c.ranged("far", g, SMALL, 1e3 * LARGE))
         .transpose()?;
-    let view = View {
+    let view = CameraDraft {
         eye: point("eye")?,
         target: point("target")?,
         up: direction("up")?.unwrap_or(DVec3::Y),
@@ -285,7 +285,7 @@ fn camera(c: &mut Call<'_, '_>) -> Run<Value> {
     Ok(Value::None)
 }
 
-fn both(view: &View) -> bool {
+fn both(view: &CameraDraft) -> bool {
     view.eye.is_some() && view.target.is_some()
 }
 

@@ -117,13 +117,13 @@ impl Thing {
 
 /// What a dict is keyed by: a value by content.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum Key {
+pub(crate) enum DictKey {
     None,
     Bool(bool),
     Int(i64),
     Float(u64),
     Text(Arc<str>),
-    Tuple(Vec<Key>),
+    Tuple(Vec<DictKey>),
 }
 
 /// The items of a list, and how many loops run over it: then it must not change.
@@ -136,7 +136,7 @@ pub(crate) struct List {
 /// The pairs of a dict in the order they were added, and how many loops run over it.
 #[derive(Debug, Default)]
 pub(crate) struct Dict {
-    pub(crate) pairs: IndexMap<Key, (Value, Value)>,
+    pub(crate) pairs: IndexMap<DictKey, (Value, Value)>,
     pub(crate) loops: u32,
 }
 

@@ -1,7 +1,7 @@
 //! FLIP (Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom and Fairchild 2020): how much a person who flips between
 //! two pictures sees change, pixel by pixel. Section and equation numbers are the paper's.
 
-use super::plane::{Grid, kernel, normalised};
+use super::plane::{Raster, kernel, normalised};
 use crate::picture::Picture;
 use crate::tone;
 use std::f32::consts::{FRAC_1_SQRT_2, PI};
@@ -53,13 +53,13 @@ pub(super) fn flip(reference: &Picture, test: &Picture) -> Vec<f32> {
 
 /// The picture as the eye resolves it, in Hunt-adjusted L*a*b* (sections 4.1.1 and 4.1.2).
 fn perceived(picture: &Picture) -> Vec<[f32; 3]> {
-    let filtered: [Grid; 3] = std::array::from_fn(|channel| {
-        let plane = Grid::of(picture, |pixel| {
+    let filtered: [Raster; 3] = std::array::from_fn(|channel| {
+        let plane = Raster::of(picture, |pixel| {
             opponent(xyz(pixel.map(tone::decode)))[channel]
         });
         // the width of the widest Gaussian serves all
         let radius = (3.0 * (0.04f32 / (2.0 * PI * PI)).sqrt() * PIXELS_PER_DEGREE).ceil() as usize;
-        let mut sum: Option<Grid> = None;
+        let mut sum: Option<Raster> = None;
         let mut mass = 0.0;
         for &(weight, width) in SENSITIVITY[channel] {
             let gaussian = kernel(radius, |x| {
@@ -94,7 +94,7 @@ struct Features {
 
 impl Features {
     fn of(picture: &Picture) -> Features {
-        let lightness = Grid::of(picture, |pixel| {
+        let lightness = Raster::of(picture, |pixel| {
             (opponent(xyz(pixel.map(tone::decode)))[0] + 16.0) / 116.0
         });
         let sigma = 0.5 * FEATURE_WIDTH * PIXELS_PER_DEGREE;

@@ -4,17 +4,17 @@ use crate::picture::Picture;
 
 /// A plane of numbers, row by row from the top left.
 #[derive(Clone, Debug)]
-pub(super) struct Grid {
+pub(super) struct Raster {
     pub(super) width: usize,
     pub(super) height: usize,
     pub(super) numbers: Vec<f32>,
 }
 
-impl Grid {
+impl Raster {
     /// One number a pixel.
-    pub(super) fn of(picture: &Picture, number: impl Fn([f32; 3]) -> f32) -> Grid {
+    pub(super) fn of(picture: &Picture, number: impl Fn([f32; 3]) -> f32) -> Raster {
         let numbers = picture.pixels().iter().map(|&p| number(p)).collect();
-        Grid {
+        Raster {
             width: picture.width() as usize,
             height: picture.height() as usize,
             numbers,
@@ -22,19 +22,19 @@ impl Grid {
     }
 
     /// Number by number of two planes of one size.
-    pub(super) fn zip(&self, other: &Grid, f: impl Fn(f32, f32) -> f32) -> Grid {
+    pub(super) fn zip(&self, other: &Raster, f: impl Fn(f32, f32) -> f32) -> Raster {
         let numbers = self
             .numbers
             .iter()
             .zip(&other.numbers)
             .map(|(&a, &b)| f(a, b))
             .collect();
-        Grid { numbers, ..*self }
+        Raster { numbers, ..*self }
     }
 
     /// The plane filtered along its rows with one kernel and along its columns with another, both of odd length. Beyond
     /// the border the nearest number counts.
-    pub(super) fn filtered(&self, along: &[f32], across: &[f32]) -> Grid {
+    pub(super) fn filtered(&self, along: &[f32], across: &[f32]) -> Raster {
         let (width, height) = (self.width, self.height);
         let mut rows = Vec::with_capacity(self.numbers.len());
         let radius = along.len() / 2;
@@ -59,7 +59,7 @@ impl Grid {
                 }
             }
         }
-        Grid { numbers, ..*self }
+        Raster { numbers, ..*self }
     }
 }
 

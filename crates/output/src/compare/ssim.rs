@@ -1,6 +1,6 @@
 //! Structural similarity (Wang, Bovik, Sheikh and Simoncelli 2004).
 
-use super::plane::{Grid, kernel, normalised};
+use super::plane::{Raster, kernel, normalised};
 use crate::picture::Picture;
 
 /// Radius of the window, pixels.
@@ -14,8 +14,8 @@ const SIGMA: f32 = 1.5;
 pub(super) fn ssim(a: &Picture, b: &Picture) -> f64 {
     let luma = |[r, g, b]: [f32; 3]| 0.2126 * r + 0.7152 * g + 0.0722 * b;
     let window = normalised(kernel(RADIUS, |x| (-x * x / (2.0 * SIGMA * SIGMA)).exp()));
-    let mean = |grid: &Grid| grid.filtered(&window, &window).numbers;
-    let (x, y) = (Grid::of(a, luma), Grid::of(b, luma));
+    let mean = |grid: &Raster| grid.filtered(&window, &window).numbers;
+    let (x, y) = (Raster::of(a, luma), Raster::of(b, luma));
     let (mx, my) = (mean(&x), mean(&y));
     let (xx, yy, xy) = (
         mean(&x.zip(&x, |a, b| a * b)),

@@ -4,7 +4,7 @@
 //! and the other planes are layers by the convention of a dot in the name (`normal.X`, `steps.Y`, ...).
 
 use super::attributes::Sorted;
-use super::{Asking, Notes, SOFTWARE};
+use super::{Asking, Metadata, SOFTWARE};
 use ::exr::prelude::*;
 use std::io::{self, Seek, Write};
 use zeroset_scene::film::{Film, Plane};
@@ -30,7 +30,7 @@ fn channels(plane: Plane) -> &'static [&'static str] {
 ///
 /// # Errors
 /// What the writer gives; a film without pixels.
-pub fn write(writer: impl Write + Seek, film: &Film, notes: &Notes) -> io::Result<()> {
+pub fn write(writer: impl Write + Seek, film: &Film, notes: &Metadata) -> io::Result<()> {
     write_watched(writer, film, notes, &Silent)
 }
 
@@ -41,7 +41,7 @@ pub fn write(writer: impl Write + Seek, film: &Film, notes: &Notes) -> io::Resul
 pub fn write_watched(
     writer: impl Write + Seek,
     film: &Film,
-    notes: &Notes,
+    notes: &Metadata,
     observer: &dyn Observer,
 ) -> io::Result<()> {
     let size = Vec2(film.width() as usize, film.height() as usize);

@@ -18,18 +18,18 @@ const ENTRY: usize = 1 << 16;
 
 /// What a file says about the picture in it. Nothing in here may name a place on the machine that made it.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Notes {
+pub struct Metadata {
     /// The scene's name.
     pub title: String,
     /// Further entries: a key of 1 to 79 printable ASCII characters, and text.
     pub entries: Vec<(String, String)>,
 }
 
-impl Notes {
-    /// Notes with a title. Of a title that is a path, its last part is kept.
-    pub fn new(title: &str) -> Notes {
+impl Metadata {
+    /// Metadata with a title. Of a title that is a path, its last part is kept.
+    pub fn new(title: &str) -> Metadata {
         let title = title.rsplit(['/', '\\']).next().unwrap_or_default();
-        Notes {
+        Metadata {
             title: title.to_owned(),
             entries: Vec::new(),
         }
@@ -37,7 +37,7 @@ impl Notes {
 
     /// These notes with one more entry.
     #[must_use]
-    pub fn with(mut self, key: &str, text: impl Into<String>) -> Notes {
+    pub fn with(mut self, key: &str, text: impl Into<String>) -> Metadata {
         self.entries.push((key.to_owned(), text.into()));
         self
     }

@@ -1,6 +1,6 @@
 //! PNG: 8 or 16 bits a channel, sRGB, with notes in text chunks.
 
-use super::{Asking, Notes, SOFTWARE};
+use super::{Asking, Metadata, SOFTWARE};
 use crate::picture::Rows;
 use crate::tone;
 use ::png::{BitDepth, ColorType, Encoder, EncodingError, SrgbRenderingIntent};
@@ -25,7 +25,7 @@ pub fn write(
     writer: impl Write,
     picture: &dyn Rows,
     depth: Depth,
-    notes: &Notes,
+    notes: &Metadata,
 ) -> io::Result<()> {
     write_watched(writer, picture, depth, notes, &Silent)
 }
@@ -38,7 +38,7 @@ pub fn write_watched(
     writer: impl Write,
     picture: &dyn Rows,
     depth: Depth,
-    notes: &Notes,
+    notes: &Metadata,
     observer: &dyn Observer,
 ) -> io::Result<()> {
     let mut writer = Faithful {
@@ -53,7 +53,7 @@ fn encode(
     writer: impl Write,
     picture: &dyn Rows,
     depth: Depth,
-    notes: &Notes,
+    notes: &Metadata,
     observer: &dyn Observer,
 ) -> io::Result<()> {
     let mut encoder = Encoder::new(writer, picture.width(), picture.height());

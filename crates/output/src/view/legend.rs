@@ -19,7 +19,7 @@ pub(crate) struct Legend {
 
 /// What the colours of a view mean, for somebody who draws it.
 #[derive(Clone, Debug)]
-pub struct Key {
+pub struct LegendKey {
     /// What is shown.
     pub title: &'static str,
     /// Places from 0 to 1 with what is written at them, ascending.
@@ -52,8 +52,8 @@ impl Legend {
     }
 
     /// The same for somebody else to draw.
-    pub(crate) fn key(&self, most: usize) -> Key {
-        Key {
+    pub(crate) fn key(&self, most: usize) -> LegendKey {
+        LegendKey {
             title: self.title,
             ticks: self.scale.ticks(most),
             colours: self.colours,

@@ -11,8 +11,8 @@ mod text;
 
 use crate::picture::Picture;
 use colorous::Gradient;
-pub use legend::Key;
 pub(crate) use legend::Legend;
+pub use legend::LegendKey;
 pub(crate) use scale::Scale;
 use zeroset_scene::film::{Film, Plane};
 
@@ -21,7 +21,7 @@ pub const NOTHING: [f32; 3] = [0.16, 0.18, 0.22];
 
 /// How a plane is shown.
 #[derive(Clone, Copy, Debug)]
-pub struct View<'a> {
+pub struct PlaneView<'a> {
     /// Which one.
     pub plane: Plane,
     /// For [`Plane::Colour`]: stops.
@@ -43,7 +43,7 @@ pub fn needed(plane: Plane) -> &'static [Plane] {
     }
 }
 
-impl View<'_> {
+impl PlaneView<'_> {
     /// Shows a film's plane; of a film that does not have it, [`NOTHING`].
     pub fn of(&self, film: &Film) -> Picture {
         let plane = film.plane(self.plane);
@@ -79,7 +79,7 @@ impl View<'_> {
     }
 
     /// What the colours of this view mean, with at most about `most` ticks; `None` where they are no numbers.
-    pub fn key(&self, film: &Film, most: usize) -> Option<Key> {
+    pub fn key(&self, film: &Film, most: usize) -> Option<LegendKey> {
         self.legend_of(film).map(|legend| legend.key(most))
     }
 

@@ -1,6 +1,6 @@
 //! Sections: a field on a plane, as Munini 2021, fig. 1 to 6 and Tomczak 2012, fig. 3.8 draw it.
 
-use super::legend::{Key, Legend};
+use super::legend::{Legend, LegendKey};
 use super::map;
 use super::scale::Scale;
 use crate::picture::Picture;
@@ -59,7 +59,7 @@ impl Section {
     }
 
     /// What the colours of [`Section::drawn`] mean, with at most about `most` ticks.
-    pub fn key(farthest: f32, most: usize) -> Key {
+    pub fn key(farthest: f32, most: usize) -> LegendKey {
         explained(farthest).key(most)
     }
 

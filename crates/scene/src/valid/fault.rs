@@ -7,7 +7,7 @@ use std::fmt;
 
 /// A step from a scene to a part of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum PathStep {
     /// To a member, by its name in scene files.
     Key(&'static str),
     /// To an item of a list, from 0.
@@ -18,7 +18,7 @@ pub enum Step {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}{fault}", place(.path))]
 pub struct SceneError {
-    path: Vec<Step>,
+    path: Vec<PathStep>,
     fault: Fault,
 }
 
@@ -126,19 +126,19 @@ impl SceneError {
 
     /// Inside of a member.
     pub(crate) fn at(mut self, key: &'static str) -> SceneError {
-        self.path.insert(0, Step::Key(key));
+        self.path.insert(0, PathStep::Key(key));
         self
     }
 
     /// Inside of an item of a list.
     pub(super) fn index(mut self, index: usize) -> SceneError {
-        self.path.insert(0, Step::Index(index));
+        self.path.insert(0, PathStep::Index(index));
         self
     }
 
     /// The way from what was checked to what is wrong, with the names of scene files: `objects[2].material`. A fault of
     /// several members together, such as `near` and `far`, has the way to what holds them.
-    pub fn path(&self) -> &[Step] {
+    pub fn path(&self) -> &[PathStep] {
         &self.path
     }
 
@@ -149,13 +149,13 @@ impl SceneError {
 }
 
 /// A path for people, with what comes between it and the message.
-fn place(path: &[Step]) -> String {
+fn place(path: &[PathStep]) -> String {
     let mut text = String::new();
     for step in path {
         match step {
-            Step::Key(key) if text.is_empty() => text += key,
-            Step::Key(key) => text += &format!(".{key}"),
-            Step::Index(i) => text += &format!("[{i}]"),
+            PathStep::Key(key) if text.is_empty() => text += key,
+            PathStep::Key(key) => text += &format!(".{key}"),
+            PathStep::Index(i) => text += &format!("[{i}]"),
         }
     }
     if !text.is_empty() {

@@ -1,6 +1,6 @@
 //! What the numbers of methods may be: what their registry says.
 
-use super::{Check, Fault, SAMPLES, SceneError};
+use super::{Checked, Fault, SAMPLES, SceneError};
 use crate::methods::{Choice, Param, Value};
 use crate::settings::{Antialias, March, Occlusion, Shadow};
 
@@ -8,7 +8,7 @@ use crate::settings::{Antialias, March, Occlusion, Shadow};
 ///
 /// # Errors
 /// Which number is wrong.
-pub fn march(march: &March) -> Check {
+pub fn march(march: &March) -> Checked {
     method(march, SAMPLES)
 }
 
@@ -16,7 +16,7 @@ pub fn march(march: &March) -> Check {
 ///
 /// # Errors
 /// Which number is wrong.
-pub fn shadow(shadow: &Shadow) -> Check {
+pub fn shadow(shadow: &Shadow) -> Checked {
     method(shadow, SAMPLES)
 }
 
@@ -24,7 +24,7 @@ pub fn shadow(shadow: &Shadow) -> Check {
 ///
 /// # Errors
 /// Which number is wrong.
-pub fn occlusion(occlusion: &Occlusion, samples: u32) -> Check {
+pub fn occlusion(occlusion: &Occlusion, samples: u32) -> Checked {
     method(occlusion, samples.min(SAMPLES))
 }
 
@@ -32,16 +32,16 @@ pub fn occlusion(occlusion: &Occlusion, samples: u32) -> Check {
 ///
 /// # Errors
 /// Which number is wrong.
-pub fn antialias(antialias: &Antialias, samples: u32) -> Check {
+pub fn antialias(antialias: &Antialias, samples: u32) -> Checked {
     method(antialias, samples.min(SAMPLES))
 }
 
-fn method<T: Choice>(chosen: &T, samples: u32) -> Check {
+fn method<T: Choice>(chosen: &T, samples: u32) -> Checked {
     (chosen.check(samples.into()))
         .map_err(|(param, refused)| SceneError::new(Fault::Method(refused)).at(param))
 }
 
 /// Whether a number of the settings is what is allowed.
-pub(super) fn setting(param: Param, value: Value) -> Check {
+pub(super) fn setting(param: Param, value: Value) -> Checked {
     (param.check(value)).map_err(|refused| SceneError::new(Fault::Method(refused)).at(param.name))
 }

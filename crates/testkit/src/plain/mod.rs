@@ -214,8 +214,8 @@ impl Plain<'_> {
             normal: field(normal),
             direction: field(d),
         };
-        let heaven = SkyColours::of(self.scene.sky());
-        let c = colour(self.settings.shading, &heaven, &what, &lighting);
+        let sky_colours = SkyColours::of(self.scene.sky());
+        let c = colour(self.settings.shading, &sky_colours, &what, &lighting);
         let hit = Hit {
             t,
             residual: probe.value(p).abs(),

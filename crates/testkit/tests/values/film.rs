@@ -3,7 +3,7 @@
 use crate::known::{Check, Draw, Eye, Found, compare, light, rgb, with};
 use crate::on;
 use glam::DVec3;
-use zeroset::output::format::Notes;
+use zeroset::output::format::Metadata;
 use zeroset::output::format::png::{Depth, write};
 use zeroset::output::picture::Picture;
 use zeroset::scene::film::Plane;
@@ -106,7 +106,7 @@ fn a_colour_reaches_the_file() {
         let picture = Picture::develop(&film, scene.settings().exposure);
         for depth in [Depth::Eight, Depth::Sixteen] {
             let mut bytes = Vec::new();
-            write(&mut bytes, &picture, depth, &Notes::new("known")).unwrap();
+            write(&mut bytes, &picture, depth, &Metadata::new("known")).unwrap();
             let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))
                 .read_info()
                 .unwrap();

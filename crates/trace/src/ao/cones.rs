@@ -40,7 +40,7 @@ pub(super) fn cones<S: Simd>(
             touch(s, solid, far, range.clone(), q);
             for (k, &w) in to.iter().enumerate() {
                 q.clearance[k][range.clone()].fill(FULL);
-                let cone = Cone {
+                let cone = OcclusionCone {
                     to: w,
                     cosine: COSINES[ring(k)],
                     far,
@@ -166,7 +166,7 @@ fn look<S: Simd>(s: S, solid: &Solid<'_>, q: &mut Scratch) {
 }
 
 /// One cone of every hit.
-struct Cone {
+struct OcclusionCone {
     to: [f32; 3],
     cosine: f32,
     far: f32,
@@ -177,7 +177,7 @@ struct Cone {
 fn march<S: Simd>(
     s: S,
     solid: &Solid<'_>,
-    cone: &Cone,
+    cone: &OcclusionCone,
     steps: u32,
     range: Range<usize>,
     q: &mut Scratch,
@@ -204,7 +204,7 @@ fn march<S: Simd>(
 fn start<S: Simd>(
     s: S,
     solid: &Solid<'_>,
-    cone: &Cone,
+    cone: &OcclusionCone,
     range: Range<usize>,
     iteration: u32,
     q: &mut Scratch,

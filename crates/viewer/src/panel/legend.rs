@@ -3,13 +3,13 @@
 use super::picked::card;
 use crate::style::Palette;
 use eframe::egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Ui, Vec2, WidgetInfo, vec2};
-use zeroset_output::view::Key;
+use zeroset_output::view::LegendKey;
 
 /// Size of the bar of colours.
 const BAR: Vec2 = vec2(14.0, 180.0);
 
 /// A bar of colours with numbers beside it.
-pub fn legend(ui: &mut Ui, key: &Key) {
+pub fn legend(ui: &mut Ui, key: &LegendKey) {
     let palette = Palette::of(ui.visuals());
     card(&palette).show(ui, |ui| {
         let (ink, line) = (ui.visuals().text_color(), 16.0);

@@ -6,7 +6,7 @@ mod frame;
 mod gpu;
 mod march;
 
-use crate::args::{Bench, Measure};
+use crate::args::{BenchArgs, Measure};
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
 use crate::json;
@@ -23,7 +23,7 @@ show(joined | plane().move(y = -0.9))
 "#;
 
 /// Measures.
-pub(crate) fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
+pub(crate) fn run(args: &BenchArgs, console: &Console) -> Result<(), Failure> {
     match &args.measure {
         Measure::Eval(what) => {
             let scene = match &what.scene {

@@ -1,6 +1,6 @@
 //! `zeroset check`.
 
-use crate::args::Check;
+use crate::args::CheckArgs;
 use crate::console::Console;
 use crate::estimate::{self, Cost};
 use crate::failure::{Exit, Failure};
@@ -70,7 +70,7 @@ struct ObjectFinding {
 }
 
 /// Checks a scene, and says what is known about it.
-pub(crate) fn run(args: &Check, console: &Console) -> Result<(), Failure> {
+pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
     let options = crate::scene::options(&args.scene, None)?;
     let loaded = crate::scene::loaded(&args.scene, &options, console)?;
     let invalid = |error: String| Failure::new(Exit::Scene, error);

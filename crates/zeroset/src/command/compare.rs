@@ -1,6 +1,6 @@
 //! `zeroset compare`.
 
-use crate::args::Compare;
+use crate::args::CompareArgs;
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
 use crate::file::write_watched;
@@ -8,7 +8,7 @@ use crate::json;
 use serde::Serialize;
 use zeroset_output::atomic::probe;
 use zeroset_output::compare::{Comparison, compare};
-use zeroset_output::format::Notes;
+use zeroset_output::format::Metadata;
 use zeroset_output::format::png::{Depth, write_watched as write_watched_png};
 use zeroset_output::format::read::read;
 
@@ -29,7 +29,7 @@ struct Numbers {
 }
 
 /// Compares two pictures.
-pub(crate) fn run(args: &Compare, console: &Console) -> Result<(), Failure> {
+pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<(), Failure> {
     if let Some(path) = &args.output {
         probe(path)?;
     }
@@ -37,7 +37,7 @@ pub(crate) fn run(args: &Compare, console: &Console) -> Result<(), Failure> {
     let found =
         compare(&reference, &test).map_err(|error| Failure::new(Exit::Job, error.to_string()))?;
     if let Some(path) = &args.output {
-        let notes = Notes::new("difference").with("Metric", "FLIP");
+        let notes = Metadata::new("difference").with("Metric", "FLIP");
         let picture = found.picture();
         write_watched(path, console, &|| false, |writer, observer| {
             write_watched_png(writer, &picture, Depth::Eight, &notes, observer)

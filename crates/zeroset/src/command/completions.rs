@@ -1,19 +1,19 @@
 //! `zeroset completions` and `zeroset man`.
 
-use crate::args::{CommandLine, Completions, Man};
+use crate::args::{CommandLine, CompletionsArgs, ManArgs};
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
 use clap::CommandFactory;
 
 /// Prints completions for a shell.
-pub(crate) fn completions(args: &Completions, console: &Console) -> Result<(), Failure> {
+pub(crate) fn completions(args: &CompletionsArgs, console: &Console) -> Result<(), Failure> {
     let mut out = Vec::new();
     clap_complete::generate(args.shell, &mut CommandLine::command(), "zeroset", &mut out);
     console.emit(&String::from_utf8_lossy(&out))
 }
 
 /// Prints a manual page.
-pub(crate) fn man(args: &Man, console: &Console) -> Result<(), Failure> {
+pub(crate) fn man(args: &ManArgs, console: &Console) -> Result<(), Failure> {
     let mut command = CommandLine::command();
     command.build();
     if let Some(name) = &args.command {

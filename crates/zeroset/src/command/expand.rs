@@ -1,6 +1,6 @@
 //! `zeroset expand`.
 
-use crate::args::Expand;
+use crate::args::ExpandArgs;
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
 use crate::file::write_text;
@@ -9,7 +9,7 @@ use zeroset_output::atomic::probe;
 use zeroset_output::display;
 
 /// Prints a scene as JSON.
-pub(crate) fn run(args: &Expand, console: &Console) -> Result<(), Failure> {
+pub(crate) fn run(args: &ExpandArgs, console: &Console) -> Result<(), Failure> {
     if let Some(path) = &args.output {
         probe(path)?;
     }

@@ -1,6 +1,6 @@
 //! `zeroset export`.
 
-use crate::args::Export;
+use crate::args::ExportArgs;
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
 use crate::file::write_text;
@@ -10,7 +10,7 @@ use zeroset_output::display;
 use zeroset_shader::export::{ExportError, glsl, wgsl};
 
 /// Prints a scene as one file of shader text.
-pub(crate) fn run(args: &Export, console: &Console) -> Result<(), Failure> {
+pub(crate) fn run(args: &ExportArgs, console: &Console) -> Result<(), Failure> {
     if let Some(path) = &args.output {
         probe(path)?;
     }

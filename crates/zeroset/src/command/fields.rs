@@ -1,6 +1,6 @@
 //! `zeroset fields`.
 
-use crate::args::Fields;
+use crate::args::FieldsArgs;
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
 use crate::json;
@@ -8,7 +8,7 @@ use crate::reference::{Entry, entries, limits, methods, page, signature};
 use std::fmt::Write;
 
 /// Lists what there is, or explains one name.
-pub(crate) fn run(args: &Fields, console: &Console) -> Result<(), Failure> {
+pub(crate) fn run(args: &FieldsArgs, console: &Console) -> Result<(), Failure> {
     let entries = entries();
     let Some(name) = &args.name else {
         return console.emit(&if args.json {

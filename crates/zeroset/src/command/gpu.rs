@@ -1,6 +1,6 @@
 //! `zeroset gpu`.
 
-use crate::args::Gpu;
+use crate::args::GpuArgs;
 use crate::console::Console;
 use crate::failure::Failure;
 use crate::json;
@@ -26,7 +26,7 @@ struct Listed<'a> {
 }
 
 /// Lists the adapters of the machine, and which one is taken.
-pub(crate) fn run(args: &Gpu, console: &Console) -> Result<(), Failure> {
+pub(crate) fn run(args: &GpuArgs, console: &Console) -> Result<(), Failure> {
     let (all, automatic) = adapters();
     if args.json {
         let listed: Vec<Listed<'_>> = all

@@ -1,6 +1,6 @@
 //! `zeroset init`.
 
-use crate::args::Init;
+use crate::args::InitArgs;
 use crate::console::Console;
 use crate::failure::Failure;
 use std::io::Write;
@@ -10,7 +10,7 @@ use zeroset_output::atomic::{create_atomically, create_folder};
 const STARTER: &str = include_str!("starter.star");
 
 /// Makes a folder with a first scene.
-pub(crate) fn run(args: &Init, console: &Console) -> Result<(), Failure> {
+pub(crate) fn run(args: &InitArgs, console: &Console) -> Result<(), Failure> {
     create_folder(&args.folder)?;
     let scene = args.folder.join("scene.star");
     create_atomically(&scene, |writer| writer.write_all(STARTER.as_bytes()))?;

@@ -1,15 +1,15 @@
 //! `zeroset slice`.
 
-use crate::args::Slice;
+use crate::args::SliceArgs;
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
 use crate::file::{default_name, write_watched};
-use zeroset::section::Plane;
+use zeroset::section::SectionPlane;
 use zeroset_catalogue::bounds::Aabb;
 use zeroset_field::program::{Limits, Program};
 use zeroset_output::atomic::probe;
 use zeroset_output::display;
-use zeroset_output::format::Notes;
+use zeroset_output::format::Metadata;
 use zeroset_output::format::png::{self, Depth};
 use zeroset_scene::film;
 use zeroset_scene::scene::Scene;
@@ -20,7 +20,7 @@ const AIR: f64 = 0.15;
 const UNBOUNDED: f64 = 2.0;
 
 /// Draws a section.
-pub(crate) fn run(args: &Slice, console: &Console) -> Result<(), Failure> {
+pub(crate) fn run(args: &SliceArgs, console: &Console) -> Result<(), Failure> {
     let options = crate::scene::options(&args.scene, Some(args.size.0))?;
     let scene = crate::scene::loaded(&args.scene, &options, console)?.scene;
     let path = match &args.output {
@@ -54,7 +54,7 @@ pub(crate) fn run(args: &Slice, console: &Console) -> Result<(), Failure> {
         Program::compile(&field, &Limits::default()).map_err(|error| invalid(error.to_string()))?;
     let plane = plane(args, &scene);
     let picture = plane.sample(&program, args.size.0).picture(!args.no_legend);
-    let notes = Notes::new(scene.name()).with("Section", args.plane.to_string());
+    let notes = Metadata::new(scene.name()).with("Section", args.plane.to_string());
     write_watched(&path, console, &|| false, |writer, observer| {
         png::write_watched(writer, &picture, Depth::Eight, &notes, observer)
     })?;
@@ -72,8 +72,8 @@ pub(crate) fn run(args: &Slice, console: &Console) -> Result<(), Failure> {
 }
 
 /// What is seen: the window, or what is bounded with some air; the whole of it fits into the picture.
-fn plane(args: &Slice, scene: &Scene) -> Plane {
-    let mut plane = Plane {
+fn plane(args: &SliceArgs, scene: &Scene) -> SectionPlane {
+    let mut plane = SectionPlane {
         axis: args.plane.axis,
         at: args.plane.at,
         centre: [0.0; 2],
@@ -89,7 +89,7 @@ fn plane(args: &Slice, scene: &Scene) -> Plane {
 }
 
 /// The bounds of all that is bounded along the picture's axes.
-fn around(scene: &Scene, plane: &Plane) -> [f64; 4] {
+fn around(scene: &Scene, plane: &SectionPlane) -> [f64; 4] {
     let finite = |b: &Aabb| {
         !b.is_empty()
             && plane

@@ -1,6 +1,6 @@
 //! `zeroset view`.
 
-use crate::args::View;
+use crate::args::ViewArgs;
 use crate::console::plain_report;
 use crate::failure::{Exit, Failure};
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use zeroset_viewer::{Open, open};
 
 /// Opens the window, and returns when it is closed. Ctrl-C ends the process: what the window saves is whole or not there,
 /// whenever it ends.
-pub(crate) fn run(args: &View) -> Result<(), Failure> {
+pub(crate) fn run(args: &ViewArgs) -> Result<(), Failure> {
     crate::scene::present(&args.scene)?;
     let options = crate::scene::options(&args.scene, None)?;
     let window = Open {
@@ -24,7 +24,7 @@ pub(crate) fn run(args: &View) -> Result<(), Failure> {
 
 /// What renders. A GPU that is asked for must be there before the window opens; one that may be there is looked for while
 /// it opens.
-fn renderer(args: &View) -> Result<MakeRenderer, Failure> {
+fn renderer(args: &ViewArgs) -> Result<MakeRenderer, Failure> {
     use crate::backend::{Backend, gpu};
     let threads = args.threads.map(usize::from);
     if args.backend == Backend::Auto && args.adapter.is_none() {

@@ -3,8 +3,8 @@
 use super::limited;
 use super::summary::{Evaluations, Summary};
 use super::target::{Container, numbered, unnamed};
-use crate::args::Render;
-use crate::backend::{Engine, Used};
+use crate::args::RenderArgs;
+use crate::backend::{ChosenRenderer, Used};
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
 use crate::file::{Progress, no_link, write_watched};
@@ -17,23 +17,23 @@ use std::time::Duration;
 use zeroset_language::load::{Loaded, Options};
 use zeroset_output::atomic::probe;
 use zeroset_output::format::png::Depth;
-use zeroset_output::format::{Notes, exr, png};
+use zeroset_output::format::{Metadata, exr, png};
 use zeroset_output::picture::{Developed, Rows};
-use zeroset_output::view::{View, needed};
+use zeroset_output::view::{PlaneView, needed};
 use zeroset_scene::film::Plane;
 use zeroset_scene::render::Frame;
 use zeroset_scene::scene::Scene;
 
 /// What the flags ask for.
 pub(crate) struct Job<'a> {
-    pub(crate) args: &'a Render,
+    pub(crate) args: &'a RenderArgs,
     pub(crate) console: &'a Console,
     pub(crate) options: Options,
-    engine: Engine,
+    engine: ChosenRenderer,
 }
 
 impl<'a> Job<'a> {
-    pub(crate) fn new(args: &'a Render, console: &'a Console) -> Result<Job<'a>, Failure> {
+    pub(crate) fn new(args: &'a RenderArgs, console: &'a Console) -> Result<Job<'a>, Failure> {
         let options = crate::scene::options(&args.scene, args.size.map(|s| s.0))?;
         if let Some(path) = &args.output
             && Container::of(path)? == Container::Exr
@@ -46,7 +46,7 @@ impl<'a> Job<'a> {
                 help,
             ));
         }
-        let engine = Engine::new(
+        let engine = ChosenRenderer::new(
             args.backend,
             args.adapter.as_deref(),
             args.threads.map(usize::from),
@@ -151,7 +151,7 @@ impl<'a> Job<'a> {
         lack: Option<&str>,
         cancelled: &(dyn Fn() -> bool + Sync),
     ) -> Result<(), Failure> {
-        let mut notes = Notes::new(scene.name()).with("Settings", json::line(scene.settings())?);
+        let mut notes = Metadata::new(scene.name()).with("Settings", json::line(scene.settings())?);
         if !options.set.is_empty() {
             notes = notes.with("Parameters", json::line(&options.set)?);
         }
@@ -170,7 +170,7 @@ impl<'a> Job<'a> {
             }),
             Container::Png => {
                 let names: Vec<String> = scene.objects().iter().map(|o| o.name.clone()).collect();
-                let view = View {
+                let view = PlaneView {
                     plane: self.args.view,
                     exposure: scene.settings().exposure,
                     legend: !self.args.no_legend,

@@ -4,7 +4,7 @@
 //! the next one takes: the small ones together cost a few hundredths of it. The one that the time ends in gives its finished
 //! tiles, the one before all other places. So every pixel is right for the rays that it has, and none is left black.
 
-use crate::backend::{Engine, Used};
+use crate::backend::{ChosenRenderer, Used};
 use crate::failure::{Exit, Failure};
 use crate::file::Progress;
 use std::time::{Duration, Instant};
@@ -113,7 +113,7 @@ impl Observer for Deadline<'_> {
 /// # Errors
 /// The scene cannot be rendered, not even the first small picture is finished in time, `progress` says to stop.
 pub(crate) fn render(
-    engine: &Engine,
+    engine: &ChosenRenderer,
     scene: &Scene,
     planes: &[Plane],
     limit: Duration,

@@ -6,7 +6,7 @@ mod summary;
 mod target;
 mod watch;
 
-use crate::args::Render;
+use crate::args::RenderArgs;
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
 use crate::interrupt;
@@ -14,7 +14,7 @@ use job::Job;
 use std::time::Instant;
 
 /// Renders.
-pub(crate) fn run(args: &Render, console: &Console) -> Result<(), Failure> {
+pub(crate) fn run(args: &RenderArgs, console: &Console) -> Result<(), Failure> {
     let job = Job::new(args, console)?;
     match &args.frames {
         _ if args.watch => watch::run(&job),
