@@ -1,5 +1,6 @@
 //! Up to [`BATCH`] points at once: one kernel an operation, vectorised over the batch.
 
+use crate::workspace::{BATCH, Lane, Workspace};
 use fearless_simd::{Level, Simd, SimdBase};
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -7,107 +8,6 @@ use zeroset_catalogue::op::*;
 use zeroset_catalogue::tape::{Instruction, Operation, Tape};
 use zeroset_catalogue::{each_change, each_leaf, each_pair, each_warp};
 use zeroset_number::{Args, Data, Dual, Lanes, Real, Vec3, v3};
-
-/// Points an instruction is run over at most. Large enough that the choice of a kernel costs nothing, small enough that
-/// the registers of a program stay in the nearest cache.
-pub const BATCH: usize = 128;
-
-/// One number of every point of a batch.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-pub struct Lane(pub [f32; BATCH]);
-
-impl Lane {
-    /// A lane of zeros.
-    pub const ZERO: Lane = Lane([0.0; BATCH]);
-}
-
-/// The registers of tapes for one thread. Made once; an evaluation allocates nothing.
-pub struct Workspace {
-    /// Value lanes; the first three are the points.
-    pub(super) lanes: Vec<Lane>,
-    /// Four lanes a number: value and gradient.
-    pub(super) duals: Vec<Lane>,
-    pub(super) marks: super::marks::MarkLanes,
-    result: usize,
-    result_dual: usize,
-}
-
-impl Workspace {
-    /// Registers for tapes that take no more of them than these two: one that finds values, one that finds marks.
-    pub fn new(values: Tape<'_>, marks: Tape<'_>) -> Workspace {
-        let (values, marks) = (values.code, marks.code);
-        let lanes = usize::from(values.registers.max(marks.registers));
-        Workspace {
-            lanes: vec![Lane::ZERO; lanes],
-            duals: vec![Lane::ZERO; 4 * usize::from(values.registers)],
-            marks: super::marks::MarkLanes::new(marks),
-            result: usize::from(values.result),
-            result_dual: 4 * usize::from(values.result),
-        }
-    }
-
-    /// The points to evaluate at: x, y and z.
-    #[inline(always)]
-    pub fn points_mut(&mut self) -> &mut [Lane; 3] {
-        (&mut self.lanes[..3])
-            .try_into()
-            .expect("a workspace has three lanes at least")
-    }
-
-    /// The points to evaluate at.
-    #[inline(always)]
-    pub fn points(&self) -> &[Lane; 3] {
-        (&self.lanes[..3])
-            .try_into()
-            .expect("a workspace has three lanes at least")
-    }
-
-    /// What [`values`] found.
-    #[inline(always)]
-    pub fn values(&self) -> &Lane {
-        &self.lanes[self.result]
-    }
-
-    /// Where [`values`] leaves what it finds, for what is made of it.
-    #[inline(always)]
-    pub fn values_mut(&mut self) -> &mut Lane {
-        &mut self.lanes[self.result]
-    }
-
-    /// The values that [`gradients`] found.
-    #[inline(always)]
-    pub fn gradient_values(&self) -> &Lane {
-        &self.duals[self.result_dual]
-    }
-
-    /// Takes the points as those to differentiate at.
-    pub(super) fn begin_gradients(&mut self, tape: Tape<'_>) {
-        for k in 0..3 {
-            self.duals[4 * k] = self.lanes[k];
-            for j in 0..3 {
-                self.duals[4 * k + 1 + j]
-                    .0
-                    .fill(if j == k { 1.0 } else { 0.0 });
-            }
-        }
-        self.result_dual = 4 * usize::from(tape.code.result);
-    }
-
-    /// What [`gradients`] found at point number `i`: the value and the derivatives along x, y and z.
-    pub fn gradient(&self, i: usize) -> (f32, [f32; 3]) {
-        let gradient = self.gradients().each_ref().map(|lane| lane.0[i]);
-        (self.gradient_values().0[i], gradient)
-    }
-
-    /// What [`gradients`] found: the derivatives along x, y and z.
-    #[inline(always)]
-    pub fn gradients(&self) -> &[Lane; 3] {
-        (&self.duals[self.result_dual + 1..][..3])
-            .try_into()
-            .expect("a result has three derivatives")
-    }
-}
 
 /// Evaluates a tape at the first `n` points of the workspace (at most [`BATCH`]). `n` is rounded up to the width of the SIMD level,
 /// so the points behind the last one must be numbers too.

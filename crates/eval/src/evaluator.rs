@@ -1,6 +1,7 @@
 //! Evaluation without SIMD in sight: slices of points in, slices of numbers out.
 
-use crate::batch::{BATCH, Workspace, run_gradients, run_values};
+use crate::batch::{run_gradients, run_values};
+use crate::workspace::{BATCH, Workspace};
 use fearless_simd::Level;
 use glam::Vec3;
 use zeroset_catalogue::tape::Tape;

@@ -35,8 +35,10 @@ mod batch;
 mod evaluator;
 mod marks;
 mod point;
+mod workspace;
 
-pub use batch::{BATCH, Lane, Workspace, gradients, values};
+pub use batch::{gradients, values};
 pub use evaluator::{Evaluator, LengthError};
-pub use marks::{Marks, marks};
+pub use marks::marks;
 pub use point::{Point, PointNumber};
+pub use workspace::{BATCH, Lane, Marks, Workspace};

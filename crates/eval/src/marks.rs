@@ -5,64 +5,14 @@
 //! (the derivative of the join with respect to that side). Keinert 2014, section 4, has the idea of a second evaluation
 //! at the hit.
 
-use super::batch::{BATCH, Kernel, Kernels, Lane, Workspace, load};
+use crate::batch::{Kernel, Kernels, load};
+use crate::workspace::{BATCH, Lane, MarkLanes, Marks, Workspace};
 use fearless_simd::{Level, Simd, SimdBase};
 use std::marker::PhantomData;
 use zeroset_catalogue::op::*;
-use zeroset_catalogue::tape::{Code, Instruction, Operation, Tape};
+use zeroset_catalogue::tape::{Instruction, Operation, Tape};
 use zeroset_catalogue::{each_leaf, each_pair};
 use zeroset_number::{Args, Data, Dual, Lanes, Real, v3};
-
-/// The marks of a batch. Numbers of objects and materials are whole; -1 where there is none.
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-pub struct Marks {
-    /// Object.
-    pub object: Lane,
-    /// The material that counts most.
-    pub first: Lane,
-    /// The material that counts second.
-    pub second: Lane,
-    /// Share of the second, 0 to 1/2.
-    pub share: Lane,
-    /// How near the orbit of a fractal came to the origin and to the planes x = 0, y = 0 and z = 0; zero elsewhere.
-    pub orbit: [Lane; 4],
-}
-
-impl Marks {
-    const NONE: Marks = Marks {
-        object: Lane([-1.0; BATCH]),
-        first: Lane([-1.0; BATCH]),
-        second: Lane([-1.0; BATCH]),
-        share: Lane::ZERO,
-        orbit: [Lane::ZERO; 4],
-    };
-}
-
-/// Marks of every value register.
-pub(super) struct MarkLanes {
-    marks: Vec<Marks>,
-    /// Share of the second operand of a join.
-    share: Lane,
-    result: usize,
-}
-
-impl MarkLanes {
-    pub(super) fn new(code: &Code) -> Self {
-        MarkLanes {
-            marks: vec![Marks::NONE; usize::from(code.registers)],
-            share: Lane::ZERO,
-            result: usize::from(code.result),
-        }
-    }
-}
-
-impl Workspace {
-    /// What [`marks`] found.
-    pub fn marks(&self) -> &Marks {
-        &self.marks.marks[self.marks.result]
-    }
-}
 
 /// Finds the marks that a tape gives the first `n` points of the workspace (at most [`BATCH`]); also leaves their values where
 /// [`super::values`] does not look.

@@ -6,7 +6,7 @@ use zeroset_catalogue::bounds::Aabb;
 use zeroset_catalogue::entries::catalogue;
 use zeroset_eval::Point;
 use zeroset_field::field::{Field, FieldError, MAX_DEPTH, Paint};
-use zeroset_field::formula::{Budget, Builder, Formula, MAX_STEPS, FormulaStep, Steps, Unary};
+use zeroset_field::formula::{Budget, Builder, Formula, FormulaStep, MAX_STEPS, Steps, Unary};
 use zeroset_field::placement::Placement;
 use zeroset_field::program::{Limits, Program};
 use zeroset_field::repetition::{Polar, Repetition};

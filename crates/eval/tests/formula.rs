@@ -6,7 +6,7 @@ use zeroset_catalogue::bounds::Aabb;
 use zeroset_eval::{BATCH, Point, Workspace};
 use zeroset_field::field::Field;
 use zeroset_field::formula::{
-    Binary, Budget, Builder, Expression, Formula, ProofError, FormulaStep, Steps, Unary,
+    Binary, Budget, Builder, Expression, Formula, FormulaStep, ProofError, Steps, Unary,
 };
 use zeroset_field::program::{Limits, Program};
 use zeroset_number::{F64, Interval, v3};

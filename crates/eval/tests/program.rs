@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use zeroset_catalogue::Dimension;
 use zeroset_catalogue::bounds::{Aabb, Exactness};
 use zeroset_catalogue::entries::catalogue;
+use zeroset_catalogue::tape::Operation;
 use zeroset_eval::{BATCH, Point, Workspace};
 use zeroset_field::field::{Field, Paint};
 use zeroset_field::placement::Placement;
@@ -248,7 +249,42 @@ fn registers_are_reused() {
         .values
         .clone();
     assert_eq!(code.instructions.len(), 199);
-    assert!(code.registers <= 6, "{} registers", code.registers);
+    // the point, and a value for each level of a balanced tree
+    assert!(code.registers <= 3 + 8, "{} registers", code.registers);
+}
+
+/// The deepest chain of joins from the result down.
+fn depth_of_joins(program: &Program) -> usize {
+    let code = &program.structure().values;
+    let mut depth = vec![0; usize::from(code.registers)];
+    for i in &code.instructions {
+        let of = |r: u16| depth[usize::from(r)];
+        depth[usize::from(i.out)] = match i.operation {
+            Operation::Pair(_) => of(i.a).max(of(i.b)) + 1,
+            Operation::Change(_) => of(i.a),
+            _ => 0,
+        };
+    }
+    depth[usize::from(code.result)]
+}
+
+#[test]
+fn sharp_unions_are_as_low_as_can_be() {
+    for (count, low) in [(1, 0), (2, 1), (3, 2), (8, 3), (100, 7), (1000, 10)] {
+        let balls: Vec<Field> = (0..count)
+            .map(|i| moved(&primitive("sphere", &[0.4]), f64::from(i), 0.0, 0.0))
+            .collect();
+        for name in ["union", "intersection"] {
+            let depth = depth_of_joins(&compiled(&join(name, &[], &balls)));
+            assert_eq!(depth, low, "{name} of {count}");
+        }
+    }
+    // what has an order keeps it
+    let balls = vec![primitive("sphere", &[1.0]); 5];
+    assert_eq!(
+        depth_of_joins(&compiled(&join("subtraction", &[], &balls))),
+        4
+    );
 }
 
 /// All copies as one union: what a repetition must not overestimate, and equal near them.

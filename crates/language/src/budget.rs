@@ -1,6 +1,6 @@
 //! What loading may take: bytes that are charged before they are asked for, and time.
 
-use crate::limits::Limits;
+use crate::limits::{Limits, in_words};
 use web_time::Instant;
 
 /// The part of the limit `memory` that loading may take: the picture needs the rest, and a scene that ends in an error
@@ -70,9 +70,9 @@ impl LoadBudget {
         }
         Err(Spent::Memory {
             what: what(),
-            wanted: size(bytes),
-            held: size(self.held),
-            allowed: size(self.memory),
+            wanted: in_words(bytes),
+            held: in_words(self.held),
+            allowed: in_words(self.memory),
         })
     }
 
@@ -82,14 +82,5 @@ impl LoadBudget {
             return Err(Spent::Time(self.seconds));
         }
         Ok(())
-    }
-}
-
-/// Bytes for people.
-pub(crate) fn size(bytes: u64) -> String {
-    match bytes {
-        0..1_000_000 => format!("{} KiB", bytes.div_ceil(1 << 10)),
-        1_000_000..10_000_000_000 => format!("{} MiB", bytes.div_ceil(1 << 20)),
-        _ => format!("{} GiB", bytes.div_ceil(1 << 30)),
     }
 }

@@ -1,6 +1,5 @@
 //! Limits: what a scene file may cost. Every one is checked before the allocation or the work that it guards.
 
-use crate::budget;
 use zeroset_scene::accumulator;
 use zeroset_scene::film::{self, Plane};
 
@@ -138,7 +137,7 @@ pub enum LimitError {
     #[error(
         "a picture of {}x{} pixels takes about {} of memory, at most {} are allowed: make it smaller, or raise the limit \
          `memory`",
-        .size[0], .size[1], budget::size(*.bytes), budget::size(*.allowed)
+        .size[0], .size[1], in_words(*.bytes), in_words(*.allowed)
     )]
     Picture {
         /// Width and height.
@@ -234,5 +233,14 @@ impl Limit {
     /// What it is in `limits`.
     pub fn of(&self, limits: &Limits) -> f64 {
         (self.get)(limits)
+    }
+}
+
+/// Bytes for people.
+pub(crate) fn in_words(bytes: u64) -> String {
+    match bytes {
+        0..1_000_000 => format!("{} KiB", bytes.div_ceil(1 << 10)),
+        1_000_000..10_000_000_000 => format!("{} MiB", bytes.div_ceil(1 << 20)),
+        _ => format!("{} GiB", bytes.div_ceil(1 << 30)),
     }
 }

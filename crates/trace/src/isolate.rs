@@ -20,17 +20,18 @@ pub(crate) struct Line {
 }
 
 impl Line {
-    fn at(&self, t: f64) -> [f64; 3] {
-        std::array::from_fn(|k| f64::from(self.origin[k]) + f64::from(self.direction[k]) * t)
+    fn at(&self, t: f64) -> Vec3<F64> {
+        let along = |k: usize| F64(f64::from(self.origin[k]) + f64::from(self.direction[k]) * t);
+        v3(along(0), along(1), along(2))
     }
 
     /// The box around a part of it.
     fn part(&self, from: f64, to: f64) -> Vec3<Interval> {
         let (a, b) = (self.at(from), self.at(to));
         v3(
-            Interval::new(a[0], b[0]),
-            Interval::new(a[1], b[1]),
-            Interval::new(a[2], b[2]),
+            Interval::new(a.x.0, b.x.0),
+            Interval::new(a.y.0, b.y.0),
+            Interval::new(a.z.0, b.z.0),
         )
     }
 
@@ -101,8 +102,7 @@ impl<'p> Isolation<'p> {
 
     fn value(&mut self, line: &Line, t: f64) -> f64 {
         self.evaluations += 1;
-        let p = line.at(t).map(F64);
-        line.sided(self.values.value(v3(p[0], p[1], p[2])).0)
+        line.sided(self.values.value(line.at(t)).0)
     }
 
     /// The place between one that is not behind the surface and one that is.
@@ -168,8 +168,7 @@ impl<'p> Isolation<'p> {
     /// The distance to the surface at `t`, about: the value over the length of the gradient.
     pub(crate) fn distance(&mut self, line: &Line, t: f32) -> f32 {
         self.evaluations += 1;
-        let p = line.at(f64::from(t)).map(F64);
-        let f = self.gradients.value(Dual::point(v3(p[0], p[1], p[2])));
+        let f = (self.gradients).value(Dual::point(line.at(f64::from(t))));
         let slope = f.d.iter().map(|d| d.0 * d.0).sum::<f64>().sqrt();
         (f.v.0.abs() / slope.max(1e-30)) as f32
     }
@@ -177,7 +176,7 @@ impl<'p> Isolation<'p> {
     /// The first place between `start` and `end` where the field is behind the surface, beyond rounding and for longer than
     /// `least`.
     pub(crate) fn first(&mut self, line: &Line, start: f32, end: f32, least: f32) -> Crossing {
-        let size = |p: [f64; 3]| p.iter().map(|c| c.abs()).sum::<f64>();
+        let size = |p: Vec3<F64>| p.x.0.abs() + p.y.0.abs() + p.z.0.abs();
         let behind = |t: f64| -ROUNDING * size(line.at(t));
         let instructions = self.program.structure().values.instructions.len();
         let most = (WORK / instructions.max(1)).max(64);

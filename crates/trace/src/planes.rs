@@ -110,11 +110,17 @@ impl Planes {
                 .zip(&sheet[at..])
                 .for_each(|(x, own)| *x += own);
         };
-        let plus3 = |sheets: &[Box<Sheet>; 3], out: &mut [f32]| {
-            for (pixel, i) in out.as_chunks_mut::<3>().0.iter_mut().zip(at..) {
-                for (x, sheet) in pixel.iter_mut().zip(sheets) {
-                    *x += sheet[i];
-                }
+        let plus3 = |[x, y, z]: &[Box<Sheet>; 3], out: &mut [f32]| {
+            let pixels = out.as_chunks_mut::<3>().0;
+            let (x, y, z) = (
+                &x[at..][..pixels.len()],
+                &y[at..][..pixels.len()],
+                &z[at..][..pixels.len()],
+            );
+            for (i, pixel) in pixels.iter_mut().enumerate() {
+                pixel[0] += x[i];
+                pixel[1] += y[i];
+                pixel[2] += z[i];
             }
         };
         match sum {

@@ -63,8 +63,10 @@ pub struct Hit {
 /// Why a query has no answer.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum QueryError {
-    /// A number is none, or infinite.
-    #[error("ray {0}: its origin and its direction must be finite numbers")]
+    /// A number is none, infinite, or too large.
+    #[error(
+        "ray {0}: its origin and its direction must be finite numbers, and the origin within 1e19 of (0, 0, 0)"
+    )]
     NotFinite(usize),
     /// A ray goes nowhere.
     #[error("ray {0}: its direction has no length")]
@@ -198,10 +200,10 @@ impl PreparedScene {
         }
         let (mut size, mut far) = (0.0f32, 0.0f32);
         for (number, ray) in rays.iter().enumerate() {
-            if !ray.origin.is_finite() || !ray.direction.is_finite() {
+            if !ray.origin.length().is_finite() || !ray.direction.is_finite() {
                 return Err(QueryError::NotFinite(number));
             }
-            if ray.direction.try_normalize().is_none() {
+            if unit(ray.direction).is_none() {
                 return Err(QueryError::NoDirection(number));
             }
             let (near, end) = (ray.near, ray.far);
@@ -235,6 +237,11 @@ impl PreparedScene {
     }
 }
 
+/// The direction with length 1, however long or short it is.
+fn unit(direction: Vec3) -> Option<Vec3> {
+    (direction / direction.abs().max_element()).try_normalize()
+}
+
 impl Query<'_> {
     /// Puts rays into the queue, each from where the scene begins to where it ends.
     fn fill(&self, rays: &[Ray], q: &mut Scratch) {
@@ -242,7 +249,7 @@ impl Query<'_> {
         q.queue.count = 0;
         q.queue.common = ray::Common::default();
         for ray in rays {
-            let d = ray.direction.normalize();
+            let d = unit(ray.direction).unwrap_or(Vec3::Z);
             let [o, d] = [ray.origin, d].map(|c| v3(c.x, c.y, c.z));
             let start = region.enter(o, d, 0.0, reach).max(ray.near);
             let end = region.leave(o, d, 0.0, reach).min(ray.far);

@@ -1,8 +1,8 @@
 //! What is known of a step of a formula over a box.
 
-use crate::formula::{Binary, Unary};
 use std::f64::consts::PI;
 use zeroset_catalogue::op::arithmetic::{self, TINY};
+use zeroset_catalogue::op::arithmetic::{Binary, Unary};
 use zeroset_number::{Interval, Real, Slope};
 
 /// What is known of a step over a box: ranges of its value and gradient, and more that [`Slope`] does not hold.

@@ -233,6 +233,12 @@ fn rays_that_are_none_are_refused() {
     let ask = |ray: Ray| scene.closest(&[fine, ray], WIDTH).map(|_| ());
     let origin = Vec3::new(0.0, f32::NAN, 0.0);
     assert_eq!(ask(Ray { origin, ..fine }), Err(QueryError::NotFinite(1)));
+    let origin = Vec3::new(0.0, 1e30, 0.0);
+    assert_eq!(ask(Ray { origin, ..fine }), Err(QueryError::NotFinite(1)));
+    for length in [1e-30, 1e30] {
+        let direction = Vec3::new(0.0, length, 0.0);
+        assert_eq!(ask(Ray { direction, ..fine }), Ok(()));
+    }
     let direction = Vec3::ZERO;
     assert_eq!(
         ask(Ray { direction, ..fine }),
