@@ -5,6 +5,7 @@ use std::fmt;
 use std::path::Path;
 use std::str::FromStr;
 use wgpu::{Backend, Backends, DeviceType, DownlevelFlags, Features, Limits};
+use zeroset_shader::texture::{MOST_LAYERS, SIDE};
 
 /// Which adapter renders.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -130,6 +131,8 @@ pub(crate) fn needed(has: &Limits) -> Limits {
         max_uniform_buffer_binding_size: 16 << 10,
         max_storage_buffer_binding_size: has.max_storage_buffer_binding_size,
         max_buffer_size: has.max_buffer_size,
+        max_texture_dimension_2d: SIDE,
+        max_texture_array_layers: has.max_texture_array_layers.min(MOST_LAYERS),
         max_compute_workgroup_storage_size: 1 << 10,
         max_compute_invocations_per_workgroup: 64,
         max_compute_workgroup_size_x: 8,

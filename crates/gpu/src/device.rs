@@ -7,7 +7,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 use web_time::Instant;
-use wgpu::{BufferUsages, ErrorFilter, Features, PollError, PollType, SubmissionIndex};
+use wgpu::{
+    BufferUsages, ErrorFilter, Extent3d, Features, PollError, PollType, SubmissionIndex,
+    TextureDimension, TextureFormat, TextureUsages,
+};
 use zeroset_scene::render::RenderError;
 
 /// A device that does not finish one submission in this time is given up. Submissions are made to take milliseconds.
@@ -136,6 +139,11 @@ impl Gpu {
         &self.info
     }
 
+    /// What the device allows.
+    pub(crate) fn limits(&self) -> &wgpu::Limits {
+        &self.limits
+    }
+
     /// The largest buffer that a shader may see, bytes.
     pub(crate) fn largest_binding(&self) -> u64 {
         let limits = &self.limits;
@@ -215,6 +223,33 @@ impl Gpu {
                 size: bytes.max(16).next_multiple_of(16),
                 usage,
                 mapped_at_creation: false,
+            })
+        })
+    }
+
+    /// A texture that shaders read by places.
+    pub(crate) fn texture(
+        &self,
+        label: &'static str,
+        size: Extent3d,
+        format: TextureFormat,
+    ) -> Result<wgpu::Texture, GpuError> {
+        let texels = [size.width, size.height, size.depth_or_array_layers].map(u64::from);
+        let texel = format.block_copy_size(None).unwrap_or(0);
+        let bytes = texels.into_iter().product::<u64>() * u64::from(texel);
+        if self.faults.fails_allocation(bytes) {
+            return Err(self.out_of_memory(bytes));
+        }
+        self.watched(bytes, || {
+            self.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size,
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: TextureDimension::D2,
+                format,
+                usage: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
+                view_formats: &[],
             })
         })
     }

@@ -23,6 +23,7 @@
 //! | `device` | the device, and everything that a driver can fail at |
 //! | `pipeline` | shaders, compiled once for scenes of equal structure |
 //! | `band`, `memory` | what fits into the device's memory, and the buffers |
+//! | `texture` | what is too long for buffers: images |
 //! | `pace` | how large a tile is, from what earlier ones took |
 //! | `flight` | submissions on their way, and the GPU's clock |
 //! | `picture` | one picture: bands, stages, tiles |
@@ -43,6 +44,7 @@ mod pipeline;
 mod renderer;
 #[doc(hidden)]
 pub mod testing;
+mod texture;
 mod timing;
 
 pub use adapter::{AdapterInfo, Choice, Kind, adapters};

@@ -213,7 +213,7 @@ impl Bench<'_> {
         let notes = self.notes(job);
         let sizes = Sizes::new(&frame, sums, notes);
         progress.check()?;
-        self.memory.fill(
+        timings.uploaded += self.memory.fill(
             self.gpu,
             self.layouts,
             &self.flight.tiles,

@@ -11,7 +11,8 @@ use std::time::Duration;
 use web_time::Instant;
 use wgpu::{
     BindGroupLayout, BindGroupLayoutEntry, BindingType, BufferBindingType, ComputePipeline,
-    PipelineCompilationOptions, PipelineLayout, ShaderStages,
+    PipelineCompilationOptions, PipelineLayout, ShaderStages, TextureSampleType,
+    TextureViewDimension,
 };
 use zeroset_scene::render::{Observer, RenderError};
 use zeroset_shader::entry::{Binding, ENTRIES, UNIFORM_NUMBERS, UNIFORM_ROWS};
@@ -58,8 +59,25 @@ impl Layouts {
     }
 }
 
-/// How a shader sees a buffer.
+/// How a shader sees a buffer or a texture.
 fn layout(binding: Binding) -> BindGroupLayoutEntry {
+    BindGroupLayoutEntry {
+        binding: binding as u32,
+        visibility: ShaderStages::COMPUTE,
+        ty: if binding.is_texture() {
+            BindingType::Texture {
+                sample_type: TextureSampleType::Float { filterable: false },
+                view_dimension: TextureViewDimension::D2Array,
+                multisampled: false,
+            }
+        } else {
+            buffer_layout(binding)
+        },
+        count: None,
+    }
+}
+
+fn buffer_layout(binding: Binding) -> BindingType {
     let storage = |read_only| BufferBindingType::Storage { read_only };
     let (ty, size) = match binding {
         Binding::Frame => (storage(true), size_of::<Frame>()),
@@ -69,15 +87,10 @@ fn layout(binding: Binding) -> BindGroupLayoutEntry {
         Binding::Rows => (BufferBindingType::Uniform, 16 * UNIFORM_ROWS),
         _ => (storage(false), 0),
     };
-    BindGroupLayoutEntry {
-        binding: binding as u32,
-        visibility: ShaderStages::COMPUTE,
-        ty: BindingType::Buffer {
-            ty,
-            has_dynamic_offset: binding == Binding::Tile,
-            min_binding_size: NonZeroU64::new(size as u64),
-        },
-        count: None,
+    BindingType::Buffer {
+        ty,
+        has_dynamic_offset: binding == Binding::Tile,
+        min_binding_size: NonZeroU64::new(size as u64),
     }
 }
 

@@ -243,20 +243,20 @@ shared! {
         roughness: f32,
         /// Fourth colour, or where a gradient ends.
         d: [f32; 3],
-        /// First row of the image in the table.
-        image: f32,
+        /// Where the image begins: the row of its first texel through all layers of the texture.
+        image_row: f32,
         /// Light of its own.
         emission: [f32; 3],
         /// Width of the image.
         width: f32,
         /// Height of the image.
         height: f32,
+        /// Column of its first texel.
+        image_column: f32,
         /// Not used.
         pad_a: f32,
         /// Not used.
         pad_b: f32,
-        /// Not used.
-        pad_c: f32,
     }
 
     /// What one ray found.

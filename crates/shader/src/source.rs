@@ -8,6 +8,7 @@ use crate::job::{FieldForm, LONGEST_COMPILED};
 use crate::layout::{
     Frame, Light, LightSum, Material, Occluder, Sample, Shared, SurfaceSum, Tile, loader, rows,
 };
+use crate::texture;
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -94,6 +95,8 @@ struct Case {
     formulas: &'static [&'static str],
     /// Whether it sends rays over hemispheres.
     beams: bool,
+    /// Whether it reads an image.
+    has_image: bool,
 }
 
 impl PartialEq for Case {
@@ -156,6 +159,11 @@ impl Key {
         self.structure.values.instructions.len() + self.structure.marks.instructions.len()
     }
 
+    /// Whether a material shows an image.
+    pub(crate) fn shows_images(&self) -> bool {
+        self.patterns.iter().any(|case| case.has_image)
+    }
+
     /// The same, but that rays are traced in turns.
     pub(crate) fn in_turns(&self) -> Key {
         Key {
@@ -191,6 +199,9 @@ impl Key {
             common = calls(&common, "table[", "table_at(") + ROW;
         }
         text += &common;
+        if self.shows_images() {
+            text += &texture::image_texel();
+        }
         let stages: &[&str] = if self.in_turns {
             &[include_str!("stage/turns.wgsl")]
         } else {
@@ -215,8 +226,8 @@ impl Key {
         }
     }
 
-    /// What turns a ray into a sample: everything but buffers and entry points. It uses `frame`, `params`, `table` and, for a
-    /// field that is data, `code`.
+    /// What turns a ray into a sample: everything but buffers, textures and entry points. It uses `frame`, `params`, `table`,
+    /// `image_texel` where it shows images and, for a field that is data, `code`.
     pub(crate) fn picture(&self) -> Text {
         let mut field = if self.interpreted {
             if self.in_turns {
@@ -247,6 +258,7 @@ impl Key {
             // writing to a string cannot fail
             let _ = writeln!(text, "const {name}_ROWS: u32 = {rows}u;");
         }
+        let _ = writeln!(text, "const TEXTURE_SIDE: u32 = {}u;", texture::SIDE);
         text += &loader::<Light>();
         text += &loader::<Occluder>();
         text += &loader::<Material>();
@@ -556,6 +568,7 @@ fn occlusion(method: &Occlusion) -> Option<Case> {
             call,
             formulas,
             beams,
+            has_image: false,
         })
     };
     match method {
@@ -624,6 +637,7 @@ fn pattern(pattern: &Pattern) -> Option<Case> {
             call,
             formulas,
             beams: false,
+            has_image: matches!(pattern, Pattern::Triplanar { .. }),
         })
     };
     match pattern {

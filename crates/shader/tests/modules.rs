@@ -122,23 +122,29 @@ fn every_method_has_a_valid_shader() {
     assert_eq!(texts.len(), count, "two methods have the same shader");
 }
 
-#[test]
-fn every_pattern_has_a_valid_shader() {
+/// The patterns, with an image of this size.
+fn patterns([width, height]: [u32; 2]) -> Scene {
     let mut scene = scene(PATTERNS);
     scene
         .edit(|s| {
             s.materials[0].pattern = Pattern::Triplanar {
                 image: Arc::new(Image {
                     path: "one.png".into(),
-                    width: 1,
-                    height: 1,
-                    pixels: vec![glam::Vec3::ONE],
+                    width,
+                    height,
+                    pixels: vec![glam::Vec3::ONE; (width * height) as usize],
                 }),
                 size: 1.0,
                 sharpness: 4.0,
             }
         })
         .expect("a scene");
+    scene
+}
+
+#[test]
+fn every_pattern_has_a_valid_shader() {
+    let scene = patterns([1, 1]);
     let text = check(&scene, FieldForm::Compiled, "patterns");
     for kind in [
         "checker",
@@ -217,15 +223,20 @@ fn layouts_are_the_shaders() {
 }
 
 #[test]
-fn entry_points_use_the_buffers_that_they_state() {
-    let scene = scene("show(sphere(1))");
+fn entry_points_use_the_buffers_and_textures_that_they_state() {
+    for scene in [scene("show(sphere(1))"), patterns([3, 2])] {
+        uses_what_it_states(&scene);
+    }
+}
+
+fn uses_what_it_states(scene: &Scene) {
     for form in [FieldForm::Compiled, FieldForm::Interpreted] {
         let mut shaders = Shaders::new(form);
-        let job = shaders.prepare(&scene).expect("a job");
-        let (module, info) = validate(&job.source, "sphere");
+        let job = shaders.prepare(scene).expect("a job");
+        let (module, info) = validate(&job.source, scene.name());
         check_entries(&module, &info);
         let turned = shaders.in_turns(&job).expect("a job in turns");
-        let (module, info) = validate(&turned.source, "sphere in turns");
+        let (module, info) = validate(&turned.source, "in turns");
         check_entries(&module, &info);
     }
 }
@@ -243,6 +254,17 @@ fn check_entries(module: &naga::Module, info: &ModuleInfo) {
                 && !uses[handle].is_empty()
             {
                 let which = Binding::ALL[binding.binding as usize];
+                assert_eq!(which as u32, binding.binding);
+                let list = naga::TypeInner::Image {
+                    dim: naga::ImageDimension::D2,
+                    arrayed: true,
+                    class: naga::ImageClass::Sampled {
+                        kind: naga::ScalarKind::Float,
+                        multi: false,
+                    },
+                };
+                let inner = &module.types[variable.ty].inner;
+                assert_eq!(which.is_texture(), *inner == list, "{which:?}");
                 assert!(
                     entry.bindings.contains(&which),
                     "{} uses {which:?}",
@@ -253,7 +275,7 @@ fn check_entries(module: &naga::Module, info: &ModuleInfo) {
         let storage = entry
             .bindings
             .iter()
-            .filter(|b| !matches!(b, Binding::Numbers | Binding::Rows))
+            .filter(|b| !b.is_texture() && !matches!(b, Binding::Numbers | Binding::Rows))
             .count();
         assert!(storage <= 8, "{} has {storage} storage buffers", entry.name);
     }
@@ -320,6 +342,21 @@ fn large_scenes_are_exported_or_refused() {
             validate(&shaders.in_turns(&job).expect("a job").source, &text);
         }
     }
+}
+
+/// A file has no textures: the pixels of its images stand in it, as far as a compiler takes so many.
+#[test]
+fn images_are_exported_or_refused() {
+    let scene = patterns([80, 50]);
+    let text = export::wgsl(&scene).expect("4000 pixels");
+    validate(&text, "an image in a file");
+    assert!(text.contains("images: array<vec3f, 4000>") && !text.contains("textureLoad"));
+    assert!(export::glsl(&scene).is_ok());
+    let error = export::wgsl(&patterns([81, 50])).expect_err("4050 pixels");
+    assert!(
+        error.to_string().contains("4050 pixels of images"),
+        "{error}"
+    );
 }
 
 #[test]

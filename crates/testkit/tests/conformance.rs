@@ -19,6 +19,8 @@ use zeroset_testkit::conform::{BUDGETS, Budget, Difference, compare, differing};
 use zeroset_testkit::plain::{self, Compiled, Quality};
 use zeroset_testkit::scenes;
 
+#[path = "conformance/images.rs"]
+mod images;
 #[path = "conformance/large.rs"]
 mod large;
 
