@@ -160,6 +160,7 @@ mod tests {
             code: Arc::from([0]),
             table: Arc::default(),
             images: Arc::default(),
+            grids: Arc::default(),
             registers: 0,
             in_turns: false,
             turns: Turns::default(),

@@ -23,7 +23,7 @@
 //! | `device` | the device, and everything that a driver can fail at |
 //! | `pipeline` | shaders, compiled once for scenes of equal structure |
 //! | `band`, `memory` | what fits into the device's memory, and the buffers |
-//! | `texture` | what is too long for buffers: images |
+//! | `texture` | what is too long for buffers: images, grids |
 //! | `pace` | how large a tile is, from what earlier ones took |
 //! | `flight` | submissions on their way, and the GPU's clock |
 //! | `picture` | one picture: bands, stages, tiles |

@@ -8,6 +8,7 @@ use crate::texture::Layers;
 use std::num::NonZeroU64;
 use std::sync::Arc;
 use wgpu::{BindGroup, BindGroupEntry, BindingResource, Buffer, BufferBinding, BufferUsages};
+use zeroset_number::Grid;
 use zeroset_scene::material::Image;
 use zeroset_shader::Job;
 use zeroset_shader::entry::{Binding, COUNTERS, ENTRIES, UNIFORM_NUMBERS, UNIFORM_ROWS};
@@ -24,6 +25,7 @@ pub(crate) struct Memory {
     groups: Option<[BindGroup; STAGES]>,
     held: Held,
     images: Layers<Image>,
+    grids: Layers<Grid>,
 }
 
 /// What of a scene the buffers hold, so that it is written once.
@@ -69,7 +71,7 @@ impl Memory {
         let uniform = BufferUsages::UNIFORM | BufferUsages::COPY_DST;
         for binding in Binding::ALL {
             let (bytes, usage) = match binding {
-                Binding::Tile | Binding::Images => continue,
+                Binding::Tile | Binding::Images | Binding::Grids => continue,
                 Binding::Frame => (size_of::<Frame>() as u64, input),
                 Binding::Params => (self.allowed(gpu, "the parameters", &job.params)?, input),
                 Binding::Numbers => (4 * UNIFORM_NUMBERS as u64, uniform),
@@ -89,6 +91,10 @@ impl Memory {
         if !self.images.has_room(&job.images) {
             self.groups = None;
             self.images.make_room(gpu, &job.images)?;
+        }
+        if !self.grids.has_room(&job.grids) {
+            self.groups = None;
+            self.grids.make_room(gpu, &job.grids)?;
         }
         if self.is_mapped || self.read.as_ref().is_none_or(|b| b.size() < sizes.read) {
             (self.read, self.is_mapped) = (None, false);
@@ -122,6 +128,7 @@ impl Memory {
                 size: NonZeroU64::new(size_of::<Tile>() as u64),
             })),
             Binding::Images => self.images.view().map(BindingResource::TextureView),
+            Binding::Grids => self.grids.view().map(BindingResource::TextureView),
             buffer => self.buffer(buffer).map(Buffer::as_entire_binding),
         };
         std::array::from_fn(|k| {
@@ -151,7 +158,7 @@ impl Memory {
             _ => 0,
         };
         put(Binding::Frame, bytemuck::bytes_of(frame));
-        let mut bytes = self.images.write(gpu, &job.images);
+        let mut bytes = self.images.write(gpu, &job.images) + self.grids.write(gpu, &job.grids);
         if is_new(&mut self.held.params, &job.params) {
             let params = bytemuck::cast_slice(&job.params);
             bytes += put(Binding::Params, params);

@@ -1,4 +1,4 @@
-//! Textures that hold long lists, such as the images of a scene, kept from picture to picture.
+//! Textures that hold long lists, the images and the grids of a scene, kept from picture to picture.
 
 use crate::device::Gpu;
 use crate::error::GpuError;
@@ -7,6 +7,7 @@ use wgpu::{
     Extent3d, Origin3d, TexelCopyBufferLayout, TexelCopyTextureInfo, Texture, TextureAspect,
     TextureFormat, TextureView, TextureViewDescriptor, TextureViewDimension,
 };
+use zeroset_number::Grid;
 use zeroset_scene::material::Image;
 use zeroset_shader::texture::{MOST_LAYERS, SIDE, Texels, starts};
 
@@ -33,6 +34,16 @@ impl Listed for Image {
             "\"{}\", an image of {}x{} pixels",
             self.path, self.width, self.height
         )
+    }
+}
+
+impl Listed for Grid {
+    const FORMAT: TextureFormat = TextureFormat::R32Float;
+    const UNIT: &'static str = "samples of grids";
+
+    fn name(&self) -> String {
+        let [x, y, z] = self.nodes();
+        format!("a grid of {x}x{y}x{z} nodes")
     }
 }
 

@@ -35,7 +35,7 @@ pub struct Timings {
     pub by_timestamps: bool,
     /// Parts that the picture was rendered in, one after the other.
     pub bands: u32,
-    /// Bytes of parameters, tables and images that the GPU did not have yet.
+    /// Bytes of parameters, tables, images and grids that the GPU did not have yet.
     pub uploaded: u64,
     /// Dispatches.
     pub dispatches: u32,

@@ -56,11 +56,13 @@ pub enum Binding {
     Rows = 12,
     /// Pixels of images, in a [`texture`](crate::texture): `texture_2d_array<f32>`.
     Images = 13,
+    /// Samples of grids, likewise.
+    Grids = 14,
 }
 
 impl Binding {
     /// All of them.
-    pub const ALL: [Binding; 14] = [
+    pub const ALL: [Binding; 15] = [
         Binding::Frame,
         Binding::Tile,
         Binding::Params,
@@ -75,11 +77,12 @@ impl Binding {
         Binding::Numbers,
         Binding::Rows,
         Binding::Images,
+        Binding::Grids,
     ];
 
     /// Whether it is a texture, else a buffer.
     pub fn is_texture(self) -> bool {
-        matches!(self, Binding::Images)
+        matches!(self, Binding::Images | Binding::Grids)
     }
 
     /// Its declaration in WGSL.
@@ -100,6 +103,7 @@ impl Binding {
             Binding::Numbers => ("uniform", "numbers", "array<vec4f, 1024>"),
             Binding::Rows => ("uniform", "rows", "array<vec4f, 1024>"),
             Binding::Images => ("", "images", "texture_2d_array<f32>"),
+            Binding::Grids => ("", "grids", "texture_2d_array<f32>"),
         };
         let space = match space {
             "" => String::new(),
@@ -129,6 +133,9 @@ pub const CONES_WIDE: Entry = Entry {
         Binding::Params,
         Binding::Numbers,
         Binding::Code,
+        Binding::Table,
+        Binding::Rows,
+        Binding::Grids,
         Binding::Cones,
         Binding::Counters,
     ],
@@ -150,6 +157,7 @@ pub const TRACE: Entry = Entry {
         Binding::Table,
         Binding::Rows,
         Binding::Images,
+        Binding::Grids,
         Binding::Cones,
         Binding::Samples,
         Binding::Counters,

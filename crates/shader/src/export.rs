@@ -13,7 +13,7 @@ use zeroset_field::program::Limits;
 use zeroset_scene::render::RenderError;
 use zeroset_scene::scene::Scene;
 
-/// Parameters, table rows, pixels of images and instructions that a file may have, of each: compilers of shaders give up on more.
+/// Parameters, table rows, pixels of images, samples of grids and instructions that a file may have, of each: compilers of shaders give up on more.
 const LARGEST: usize = 4000;
 
 /// Why there is no file.
@@ -172,6 +172,10 @@ fn body(scene: &Scene) -> Result<String, ExportError> {
             "pixels of images",
             texture::starts(&parts.images).last().unwrap_or(0) as usize,
         ),
+        (
+            "samples of grids",
+            texture::starts(&parts.grids).last().unwrap_or(0) as usize,
+        ),
     ];
     if let Some((what, count)) = large.into_iter().find(|(_, count)| *count > LARGEST) {
         return Err(ExportError::Large { what, count });
@@ -207,6 +211,16 @@ fn body(scene: &Scene) -> Result<String, ExportError> {
             pixels.map(|c| row(&c.to_array())).collect(),
         );
         text += IMAGE_TEXEL;
+    }
+    if parts.key.reads_grids() {
+        let samples = parts.grids.iter().flat_map(|grid| grid.values());
+        list(
+            &mut text,
+            "grids",
+            "f32",
+            samples.map(|&x| number(x)).collect(),
+        );
+        text += GRID_TEXEL;
     }
     let _ = writeln!(
         text,
@@ -245,6 +259,13 @@ fn pivot(frame: &Frame) -> f32 {
 const IMAGE_TEXEL: &str = "
 fn image_texel(at: u32) -> vec3f {
     return images[at];
+}
+";
+
+/// The function that reads a sample of `grids`, by its number.
+const GRID_TEXEL: &str = "
+fn grid_texel(at: u32) -> f32 {
+    return grids[at];
 }
 ";
 

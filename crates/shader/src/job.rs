@@ -1,7 +1,7 @@
 //! A scene as numbers for a shader: what changes from picture to picture, in buffers.
 
 use crate::entry::{CONE_SIDES, MARGIN};
-use crate::layout::{Frame, Light, Material, Occluder};
+use crate::layout::{self, Frame, Light, Material, Occluder};
 use crate::source::{Key, number, pattern_kind, reach};
 use crate::texture;
 use std::collections::{HashMap, HashSet};
@@ -10,6 +10,7 @@ use zeroset_catalogue::bounds::Aabb;
 use zeroset_catalogue::entries::catalogue;
 use zeroset_field::field::Field;
 use zeroset_field::program::{Limits, Program};
+use zeroset_number::Grid;
 use zeroset_scene::accumulator::Sum;
 use zeroset_scene::camera::Camera;
 use zeroset_scene::light::Source as LightSource;
@@ -71,6 +72,8 @@ pub struct Job {
     pub table: Arc<[[f32; 4]]>,
     /// Images of materials, in the order in which their texels lie in their [`texture`].
     pub images: Arc<[Arc<Image>]>,
+    /// Grids of samples of the field, likewise.
+    pub grids: Arc<[Arc<Grid>]>,
     /// Words that the registers of an interpreted field take for each thread; 0 where the field is code.
     pub registers: u32,
     /// Whether each dispatch of rays answers one question of each to its field; else it traces them to the end.
@@ -107,6 +110,7 @@ impl Shaders {
             code: made.code,
             table: parts.table.into(),
             images: parts.images.into(),
+            grids: parts.grids.into(),
             registers: made.registers,
             in_turns: false,
             turns,
@@ -157,6 +161,7 @@ pub(crate) struct Parts {
     pub(crate) params: Vec<f32>,
     pub(crate) table: Vec<[f32; 4]>,
     pub(crate) images: Vec<Arc<Image>>,
+    pub(crate) grids: Vec<Arc<Grid>>,
 }
 
 impl Parts {
@@ -179,7 +184,8 @@ impl Parts {
             }
         };
         let images = images(scene);
-        let (table, mut frame) = tables(scene, &images, frame(scene, &region));
+        let grids = program.data().grids.clone();
+        let (table, mut frame) = tables(scene, &images, &grids, frame(scene, &region));
         frame.max_steps = program.patient(scene.settings().max_steps);
         frame.quality = u32::from(program.is_fractal())
             | u32::from(program.is_close()) << 1
@@ -190,6 +196,7 @@ impl Parts {
             params: program.params().to_vec(),
             table,
             images,
+            grids,
         })
     }
 }
@@ -341,7 +348,12 @@ fn image(pattern: &Pattern) -> Option<&Arc<Image>> {
 }
 
 /// The table, and the frame that knows where in it everything is.
-fn tables(scene: &Scene, images: &[Arc<Image>], mut frame: Frame) -> (Vec<[f32; 4]>, Frame) {
+fn tables(
+    scene: &Scene,
+    images: &[Arc<Image>],
+    grids: &[Arc<Grid>],
+    mut frame: Frame,
+) -> (Vec<[f32; 4]>, Frame) {
     let mut table = Vec::new();
     frame.lights = scene.lights().len() as u32;
     frame.light_rows = 0;
@@ -370,11 +382,27 @@ fn tables(scene: &Scene, images: &[Arc<Image>], mut frame: Frame) -> (Vec<[f32; 
             material_row(material, place.copied().unwrap_or(0)),
         );
     }
+    frame.grid_rows = table.len() as u32;
+    for (grid, start) in grids.iter().zip(texture::starts(grids)) {
+        push(&mut table, grid_row(grid, start));
+    }
     (table, frame)
 }
 
 fn push<T: bytemuck::Pod>(table: &mut Vec<[f32; 4]>, row: T) {
     table.extend_from_slice(bytemuck::cast_slice(std::slice::from_ref(&row)));
+}
+
+/// `start`: the first texel of its samples.
+pub(crate) fn grid_row(grid: &Grid, start: u64) -> layout::Grid {
+    let [nodes_x, nodes_y, _] = grid.nodes().map(|n| n as f32);
+    let [row, column] = texture::place(start);
+    layout::Grid {
+        nodes_x,
+        nodes_y,
+        row,
+        column,
+    }
 }
 
 fn light_row(light: &zeroset_scene::light::Light) -> Light {

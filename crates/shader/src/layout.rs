@@ -157,10 +157,10 @@ shared! {
         detail: u32,
         /// The first of the rays a pixel that are traced now.
         first_ray: u32,
+        /// First row of the grids.
+        grid_rows: u32,
         /// Not used.
-        pad_a: u32,
-        /// Not used.
-        pad_b: u32,
+        pad: u32,
     }
 
     /// What one dispatch covers.
@@ -257,6 +257,18 @@ shared! {
         pad_a: f32,
         /// Not used.
         pad_b: f32,
+    }
+
+    /// A grid of samples, as a row of the table.
+    Grid {
+        /// Nodes along x.
+        nodes_x: f32,
+        /// Nodes along y.
+        nodes_y: f32,
+        /// Where its samples begin: the row of the first texel through all layers of the texture.
+        row: f32,
+        /// Column of that texel.
+        column: f32,
     }
 
     /// What one ray found.

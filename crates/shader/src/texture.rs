@@ -7,6 +7,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
+use zeroset_number::Grid;
 use zeroset_scene::material::Image;
 
 /// Texels along both sides of a layer: every device that renders at all has so many.
@@ -41,6 +42,18 @@ impl Texels for Image {
     }
 }
 
+impl Texels for Grid {
+    const CHANNELS: usize = 1;
+
+    fn count(&self) -> u64 {
+        self.values().len() as u64
+    }
+
+    fn numbers(&self, texels: Range<usize>) -> Cow<'_, [f32]> {
+        Cow::Borrowed(&self.values()[texels])
+    }
+}
+
 /// The first texel of each, and of what would come next.
 pub fn starts<T: Texels>(all: &[Arc<T>]) -> impl Iterator<Item = u64> {
     let first = std::iter::once(0);
@@ -56,17 +69,28 @@ pub(crate) fn place(texel: u64) -> [f32; 2] {
     [(texel / side) as f32, (texel % side) as f32]
 }
 
-/// The function that reads a texel of `images`, by its number.
-pub(crate) fn image_texel() -> String {
-    format!(
-        "
-fn image_texel(at: u32) -> vec3f {{
-    let row = at / {SIDE}u;
-    return textureLoad(images, vec2u(at % {SIDE}u, row % {SIDE}u), row / {SIDE}u, 0).xyz;
-}}
-"
-    )
+/// The constant that the functions below read.
+pub(crate) fn side() -> String {
+    format!("const TEXTURE_SIDE: u32 = {SIDE}u;\n")
 }
+
+/// The function that reads a texel of `images`, by its number.
+pub(crate) const IMAGE_TEXEL: &str = "
+fn image_texel(at: u32) -> vec3f {
+    let row = at / TEXTURE_SIDE;
+    let place = vec2u(at % TEXTURE_SIDE, row % TEXTURE_SIDE);
+    return textureLoad(images, place, row / TEXTURE_SIDE, 0).xyz;
+}
+";
+
+/// The function that reads a texel of `grids`, by its number.
+pub(crate) const GRID_TEXEL: &str = "
+fn grid_texel(at: u32) -> f32 {
+    let row = at / TEXTURE_SIDE;
+    let place = vec2u(at % TEXTURE_SIDE, row % TEXTURE_SIDE);
+    return textureLoad(grids, place, row / TEXTURE_SIDE, 0).x;
+}
+";
 
 #[cfg(test)]
 mod tests {

@@ -35,6 +35,7 @@ fn toy(size: [u32; 2], samples: u32, work: f32) -> Job {
         code: vec![7].into(),
         table: vec![[0.7; 4]].into(),
         images: Vec::new().into(),
+        grids: Vec::new().into(),
         registers: 0,
         in_turns: false,
         turns: zeroset_shader::Turns::default(),
