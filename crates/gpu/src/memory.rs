@@ -58,7 +58,7 @@ fn is_new<T: PartialEq>(held: &mut Option<Arc<[T]>>, numbers: &Arc<[T]>) -> bool
 
 impl Memory {
     /// Makes room for a band, and writes what the scene says, as far as it is not there. Gives the bytes of that.
-    pub(crate) fn fill(
+    pub(crate) async fn fill(
         &mut self,
         gpu: &Gpu,
         layouts: &Layouts,
@@ -85,26 +85,28 @@ impl Memory {
                 // the old buffer goes first: both may not fit
                 (*slot, self.groups) = (None, None);
                 self.held.forget(binding);
-                *slot = Some(gpu.buffer("picture", bytes, usage)?);
+                *slot = Some(gpu.buffer("picture", bytes, usage).await?);
             }
         }
         if !self.images.has_room(&job.images) {
             self.groups = None;
-            self.images.make_room(gpu, &job.images)?;
+            self.images.make_room(gpu, &job.images).await?;
         }
         if !self.grids.has_room(&job.grids) {
             self.groups = None;
-            self.grids.make_room(gpu, &job.grids)?;
+            self.grids.make_room(gpu, &job.grids).await?;
         }
         if self.is_mapped || self.read.as_ref().is_none_or(|b| b.size() < sizes.read) {
             (self.read, self.is_mapped) = (None, false);
             let usage = BufferUsages::MAP_READ | BufferUsages::COPY_DST;
-            self.read = Some(gpu.buffer("readback", sizes.read, usage)?);
+            self.read = Some(gpu.buffer("readback", sizes.read, usage).await?);
         }
         if self.groups.is_none() {
-            self.groups = Some(gpu.watched(0, || self.bind(gpu, layouts, tiles))?);
+            let bind = || self.bind(gpu, layouts, tiles);
+            self.groups = Some(gpu.watched(0, bind).await?);
         }
         gpu.watched(sizes.read, || self.write(gpu, job, frame))
+            .await
     }
 
     fn allowed<T>(&self, gpu: &Gpu, what: &'static str, all: &[T]) -> Result<u64, GpuError> {

@@ -76,7 +76,7 @@ impl<T: Listed> Layers<T> {
     ///
     /// # Errors
     /// The device has not so many layers, or not so much memory.
-    pub(crate) fn make_room(&mut self, gpu: &Gpu, all: &[Arc<T>]) -> Result<(), GpuError> {
+    pub(crate) async fn make_room(&mut self, gpu: &Gpu, all: &[Arc<T>]) -> Result<(), GpuError> {
         // the old texture goes first: both may not fit
         *self = Layers::default();
         let most = gpu.limits().max_texture_array_layers.min(MOST_LAYERS);
@@ -87,7 +87,7 @@ impl<T: Listed> Layers<T> {
             height: rows.min(u64::from(SIDE)) as u32,
             depth_or_array_layers: layers as u32,
         };
-        let texture = gpu.texture(T::UNIT, size, T::FORMAT)?;
+        let texture = gpu.texture(T::UNIT, size, T::FORMAT).await?;
         let view = texture.create_view(&TextureViewDescriptor {
             dimension: Some(TextureViewDimension::D2Array),
             ..TextureViewDescriptor::default()
