@@ -5,6 +5,7 @@ use crate::formula::{Binary, Formula, FormulaStep};
 use crate::placement::Placement;
 use crate::program::{CompileError, Limits, Program, Structure};
 use crate::repetition::{Polar, Repetition};
+use crate::sampled::Sampled;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -13,6 +14,7 @@ use zeroset_catalogue::entries::catalogue;
 use zeroset_catalogue::op::{code, reads_point};
 use zeroset_catalogue::tape::{Code, Instruction, Operation};
 use zeroset_catalogue::{Dimension, Stretch};
+use zeroset_number::{Data, Grid};
 
 /// Sides of a box that has none, as parameters: squares of it still fit single precision.
 const FAR: f64 = 1e18;
@@ -38,6 +40,7 @@ const INPUT: u32 = u32::MAX;
 struct Lowering<'l> {
     steps: Vec<Lowered>,
     params: Vec<f32>,
+    grids: Vec<Arc<Grid>>,
     /// Shared nodes: the value of a node at a point.
     known: HashMap<(usize, u32), u32>,
     limits: &'l Limits,
@@ -55,6 +58,7 @@ pub(crate) fn compile(field: &Field, limits: &Limits) -> Result<Program, Compile
     let mut l = Lowering {
         steps: Vec::new(),
         params: Vec::new(),
+        grids: Vec::new(),
         known: HashMap::new(),
         limits,
         steep: false,
@@ -68,7 +72,10 @@ pub(crate) fn compile(field: &Field, limits: &Limits) -> Result<Program, Compile
     };
     Ok(Program {
         structure: Arc::new(structure),
-        data: Arc::new(l.params.into()),
+        data: Arc::new(Data {
+            params: l.params,
+            grids: l.grids,
+        }),
         bounds: facts.bounds,
         exactness: facts.exactness,
         steep: l.steep,
@@ -199,6 +206,7 @@ impl Lowering<'_> {
             Node::Repeat { repetition, shape } => self.repeat(repetition, shape, point)?,
             Node::Polar { polar, shape } => self.polar(polar, shape, point)?,
             Node::Formula(formula) => self.formula(formula, point)?,
+            Node::Sampled(sampled) => self.sampled(sampled, point)?,
             Node::Paint { paint, shape } => {
                 let value = self.field(shape, point)?;
                 self.mark(*paint, value)?
@@ -401,6 +409,24 @@ impl Lowering<'_> {
             point,
             &[&sides[..], &[formula.slope()]].concat(),
         )
+    }
+
+    fn sampled(&mut self, sampled: &Sampled, point: u32) -> Result<u32, CompileError> {
+        let (sides, grid) = (sides(&sampled.bounds()), sampled.grid());
+        let number = match self.grids.iter().position(|g| Arc::ptr_eq(g, grid)) {
+            Some(number) => number,
+            None => {
+                self.grids.push(Arc::clone(grid));
+                self.grids.len() - 1
+            }
+        };
+        let place = [sampled.bounds().min, sampled.density()].concat();
+        let nodes = grid.nodes().map(f64::from);
+        let params = [&place[..], &[number as f64], &nodes].concat();
+        let inside = self.warp(code::CLAMP, point, &sides)?;
+        let value = self.leaf(code::SAMPLED, inside, &params)?;
+        let slope = [sampled.slope()];
+        self.change(code::CONTINUE, value, point, &[&sides[..], &slope].concat())
     }
 }
 

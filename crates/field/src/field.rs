@@ -7,6 +7,7 @@ use crate::formula::Formula;
 use crate::level::join_bounds;
 use crate::placement::Placement;
 use crate::repetition::{Polar, Repetition};
+use crate::sampled::Sampled;
 use std::sync::Arc;
 use zeroset_catalogue::bounds::{Aabb, Exactness};
 use zeroset_catalogue::entries::{JoinEntry, MapEntry, ModifyEntry, PrimitiveEntry};
@@ -79,6 +80,9 @@ pub enum Node {
     },
     /// A free-form formula over x, y and z.
     Formula(Arc<Formula>),
+    /// A grid of samples. (Scenes have no word for it yet: it holds the renderers to the same grids.)
+    #[doc(hidden)]
+    Sampled(Arc<Sampled>),
     /// A field whose surface has a material, or belongs to an object, of its own.
     Paint {
         /// Which.
@@ -483,6 +487,22 @@ impl Field {
         Field::new(Node::Formula(formula), facts)
     }
 
+    /// A grid of samples, continued beyond its box.
+    #[doc(hidden)]
+    pub fn sampled(sampled: Arc<Sampled>) -> Field {
+        let facts = Facts {
+            bounds: sampled.bounds(),
+            exactness: Exactness::Bound,
+            slope: sampled.slope(),
+            steep: true,
+            dimension: Dimension::Three,
+            depth: 1,
+            nodes: 1,
+            materials: 0,
+        };
+        Field::new(Node::Sampled(sampled), facts)
+    }
+
     /// This field painted, where no part of it is painted in the same way already.
     ///
     /// # Errors
@@ -514,7 +534,7 @@ impl Field {
     /// The nodes right below this one.
     pub fn children(&self) -> &[Field] {
         match self.node() {
-            Node::Primitive { .. } | Node::Formula(_) => &[],
+            Node::Primitive { .. } | Node::Formula(_) | Node::Sampled(_) => &[],
             Node::Join { shapes, .. } => shapes,
             Node::Map { shape, .. }
             | Node::Modify { shape, .. }

@@ -32,5 +32,7 @@ pub mod placement;
 pub mod program;
 mod proof;
 pub mod repetition;
+#[doc(hidden)]
+pub mod sampled;
 pub mod shape;
 pub mod text;

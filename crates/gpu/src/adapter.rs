@@ -5,6 +5,7 @@ use std::fmt;
 use std::path::Path;
 use std::str::FromStr;
 use wgpu::{Backend, Backends, DeviceType, DownlevelFlags, Features, Limits};
+use zeroset_shader::texture::{MOST_LAYERS, SIDE};
 
 /// Which adapter renders.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -130,6 +131,8 @@ pub(crate) fn needed(has: &Limits) -> Limits {
         max_uniform_buffer_binding_size: 16 << 10,
         max_storage_buffer_binding_size: has.max_storage_buffer_binding_size,
         max_buffer_size: has.max_buffer_size,
+        max_texture_dimension_2d: SIDE,
+        max_texture_array_layers: has.max_texture_array_layers.min(MOST_LAYERS),
         max_compute_workgroup_storage_size: 1 << 10,
         max_compute_invocations_per_workgroup: 64,
         max_compute_workgroup_size_x: 8,
@@ -179,14 +182,14 @@ pub(crate) struct Adapters {
 
 impl Adapters {
     /// Looks for adapters, the best first.
-    pub(crate) fn find() -> Adapters {
+    pub(crate) async fn find() -> Adapters {
         let backends = Backends::PRIMARY;
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
             backends,
             flags: wgpu::InstanceFlags::empty().with_env(),
             ..wgpu::InstanceDescriptor::new_without_display_handle()
         });
-        let found = pollster::block_on(instance.enumerate_adapters(backends));
+        let found = instance.enumerate_adapters(backends).await;
         let mut adapters: Vec<_> = found
             .into_iter()
             .map(|adapter| (AdapterInfo::new(&adapter), adapter))
@@ -197,11 +200,11 @@ impl Adapters {
     }
 
     /// The adapter that a choice means.
-    pub(crate) fn choose(choice: &Choice) -> Result<wgpu::Adapter, GpuError> {
+    pub(crate) async fn choose(choice: &Choice) -> Result<wgpu::Adapter, GpuError> {
         let all = if *choice == Choice::Auto && !may_have_gpu() {
             Adapters::default()
         } else {
-            Adapters::find()
+            Adapters::find().await
         };
         let best = all.adapters.iter().find(|(info, _)| match choice {
             Choice::Auto => is_automatic(info),
@@ -252,8 +255,8 @@ fn told(info: &AdapterInfo) -> String {
 }
 
 /// All adapters, the best first, and the number of the one that [`Choice::Auto`] takes.
-pub fn adapters() -> (Vec<AdapterInfo>, Option<usize>) {
-    let all = Adapters::find();
+pub(crate) async fn adapters() -> (Vec<AdapterInfo>, Option<usize>) {
+    let all = Adapters::find().await;
     let infos: Vec<_> = all.adapters.into_iter().map(|(info, _)| info).collect();
     let automatic = infos.iter().position(is_automatic);
     (infos, automatic)
@@ -304,7 +307,8 @@ mod tests {
 
     #[test]
     fn a_name_that_nothing_has_is_refused_with_what_there_is() {
-        let error = Adapters::choose(&Choice::Named("no such thing".into())).err();
+        let choice = Choice::Named("no such thing".into());
+        let error = crate::blocking::now(Adapters::choose(&choice)).err();
         let Some(error @ GpuError::NoAdapter { .. }) = error else {
             panic!("{error:?}");
         };

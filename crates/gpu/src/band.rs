@@ -159,6 +159,8 @@ mod tests {
             params: Arc::default(),
             code: Arc::from([0]),
             table: Arc::default(),
+            images: Arc::default(),
+            grids: Arc::default(),
             registers: 0,
             in_turns: false,
             turns: Turns::default(),

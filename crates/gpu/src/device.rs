@@ -3,11 +3,14 @@
 use crate::adapter::{self, AdapterInfo, Adapters, Choice};
 use crate::error::GpuError;
 use crate::fault::Faults;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use crate::host::{Host, Signal};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 use web_time::Instant;
-use wgpu::{BufferUsages, ErrorFilter, Features, PollError, PollType, SubmissionIndex};
+use wgpu::{
+    BufferUsages, ErrorFilter, Extent3d, Features, SubmissionIndex, TextureDimension,
+    TextureFormat, TextureUsages,
+};
 use zeroset_scene::render::RenderError;
 
 /// A device that does not finish one submission in this time is given up. Submissions are made to take milliseconds.
@@ -16,8 +19,6 @@ const PATIENCE: Duration = Duration::from_secs(20);
 const COMPILING: Duration = Duration::from_secs(180);
 /// As long as this for work of a picture that nobody waits for any more, before the next one begins.
 const LEFT: Duration = Duration::from_secs(3);
-/// As long as this where a device is dropped.
-const GOODBYE: Duration = Duration::from_millis(200);
 /// Who waits is asked whether to stop this often.
 const LOOK: Duration = Duration::from_millis(50);
 
@@ -32,8 +33,14 @@ pub(crate) enum Work {
     Left,
 }
 
+/// Work that was given to a device.
+pub(crate) struct Submission {
+    index: SubmissionIndex,
+    done: Signal,
+}
+
 /// An opened GPU.
-pub struct Gpu {
+pub(crate) struct Gpu {
     info: AdapterInfo,
     limits: wgpu::Limits,
     pub(crate) device: wgpu::Device,
@@ -42,6 +49,7 @@ pub struct Gpu {
     pub(crate) tick: Option<f64>,
     status: Arc<Status>,
     faults: Faults,
+    pub(crate) host: &'static dyn Host,
 }
 
 /// What the driver said on its own.
@@ -77,12 +85,12 @@ impl Gpu {
     ///
     /// # Errors
     /// There is none, it lacks something, or its driver gives no device.
-    pub fn open(choice: &Choice) -> Result<Gpu, GpuError> {
-        Gpu::open_with(choice, Faults::default())
-    }
-
-    pub(crate) fn open_with(choice: &Choice, faults: Faults) -> Result<Gpu, GpuError> {
-        let adapter = Adapters::choose(choice)?;
+    pub(crate) async fn open(
+        choice: &Choice,
+        faults: Faults,
+        host: &'static dyn Host,
+    ) -> Result<Gpu, GpuError> {
+        let adapter = Adapters::choose(choice).await?;
         let info = AdapterInfo::new(&adapter);
         let limits = adapter::needed(&adapter.limits());
         let failed = |reason: String| GpuError::NoDevice {
@@ -101,7 +109,7 @@ impl Gpu {
             memory_hints: wgpu::MemoryHints::MemoryUsage,
             trace: wgpu::Trace::Off,
         });
-        let (device, queue) = pollster::block_on(asked).map_err(|e| failed(e.to_string()))?;
+        let (device, queue) = asked.await.map_err(|e| failed(e.to_string()))?;
         let status = Arc::new(Status::default());
         let told = Arc::clone(&status);
         device.set_device_lost_callback(move |reason, message| {
@@ -128,12 +136,18 @@ impl Gpu {
             tick,
             status,
             faults,
+            host,
         })
     }
 
     /// The adapter.
-    pub fn info(&self) -> &AdapterInfo {
+    pub(crate) fn info(&self) -> &AdapterInfo {
         &self.info
+    }
+
+    /// What the device allows.
+    pub(crate) fn limits(&self) -> &wgpu::Limits {
+        &self.limits
     }
 
     /// The largest buffer that a shader may see, bytes.
@@ -165,7 +179,11 @@ impl Gpu {
     }
 
     /// Runs commands, and says what the driver says about them. `bytes` is what they allocate, for the message.
-    pub(crate) fn watched<T>(&self, bytes: u64, run: impl FnOnce() -> T) -> Result<T, GpuError> {
+    pub(crate) async fn watched<T>(
+        &self,
+        bytes: u64,
+        run: impl FnOnce() -> T,
+    ) -> Result<T, GpuError> {
         let scopes = [
             ErrorFilter::Validation,
             ErrorFilter::Internal,
@@ -176,7 +194,8 @@ impl Gpu {
         let mut first = None;
         // scopes close in the reverse of the order that they were opened in
         for scope in scopes.into_iter().rev() {
-            first = first.or(pollster::block_on(scope.pop()));
+            let error = scope.pop().await;
+            first = first.or(error);
         }
         match first {
             None => self.check().map(|()| made),
@@ -199,7 +218,7 @@ impl Gpu {
     }
 
     /// A buffer of zeros.
-    pub(crate) fn buffer(
+    pub(crate) async fn buffer(
         &self,
         label: &'static str,
         bytes: u64,
@@ -217,27 +236,63 @@ impl Gpu {
                 mapped_at_creation: false,
             })
         })
+        .await
+    }
+
+    /// A texture that shaders read by places.
+    pub(crate) async fn texture(
+        &self,
+        label: &'static str,
+        size: Extent3d,
+        format: TextureFormat,
+    ) -> Result<wgpu::Texture, GpuError> {
+        let texels = [size.width, size.height, size.depth_or_array_layers].map(u64::from);
+        let texel = format.block_copy_size(None).unwrap_or(0);
+        let bytes = texels.into_iter().product::<u64>() * u64::from(texel);
+        if self.faults.fails_allocation(bytes) {
+            return Err(self.out_of_memory(bytes));
+        }
+        self.watched(bytes, || {
+            self.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size,
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: TextureDimension::D2,
+                format,
+                usage: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
+                view_formats: &[],
+            })
+        })
+        .await
     }
 
     /// Gives the GPU something to do.
-    pub(crate) fn submit(
+    pub(crate) async fn submit(
         &self,
         encoder: wgpu::CommandEncoder,
-    ) -> Result<SubmissionIndex, GpuError> {
+    ) -> Result<Submission, GpuError> {
         if self.faults.loses_device() {
             self.device.destroy();
             self.status.lose("a fault that was asked for");
         }
-        self.watched(0, || self.queue.submit([encoder.finish()]))
+        let index = self
+            .watched(0, || self.queue.submit([encoder.finish()]))
+            .await?;
+        let done = Signal::default();
+        let told = done.clone();
+        self.queue.on_submitted_work_done(move || told.give());
+        Ok(Submission { index, done })
     }
 
-    /// Waits until a submission is done, and its buffers are mapped. A device that does not answer counts as lost.
+    /// Waits until a submission is done, and buffers that are mapped after it. A device that does not answer counts as lost.
     ///
     /// # Errors
     /// The device is lost, or `stop` says that nobody waits any more; the submission is then still on its way.
-    pub(crate) fn wait(
+    pub(crate) async fn wait(
         &self,
-        submission: &SubmissionIndex,
+        submission: &Submission,
+        mapped: &[Signal],
         work: Work,
         stop: &dyn Fn() -> bool,
     ) -> Result<(), GpuError> {
@@ -249,43 +304,25 @@ impl Gpu {
         let patience = self.faults.patience().unwrap_or(usual);
         let began = Instant::now();
         loop {
-            let wait = PollType::Wait {
-                submission_index: Some(submission.clone()),
-                timeout: Some(LOOK.min(patience)),
-            };
-            // wgpu panics where the driver reports the loss of the device while it is waited for
-            match catch_unwind(AssertUnwindSafe(|| self.device.poll(wait))) {
-                Ok(Ok(_)) => return self.check(),
-                Ok(Err(PollError::Timeout)) if stop() => {
-                    return Err(GpuError::Scene(RenderError::Cancelled));
-                }
-                Ok(Err(PollError::Timeout)) if began.elapsed() < patience => self.check()?,
-                Ok(Err(PollError::Timeout)) => {
-                    let seconds = patience.as_secs_f32();
-                    self.status
-                        .lose(&format!("it did not answer for {seconds} s"));
-                }
-                Ok(Err(error)) => self.status.lose(&error.to_string()),
-                Err(_) => self
-                    .status
-                    .lose("the driver failed while it was waited for"),
+            let most = LOOK.min(patience);
+            let paused = (self.host).pause(&self.device, &submission.index, most);
+            if let Err(reason) = paused.await {
+                self.status.lose(&reason);
             }
             self.check()?;
+            if submission.done.is_given() && mapped.iter().all(Signal::is_given) {
+                return Ok(());
+            }
+            if stop() {
+                return Err(GpuError::Scene(RenderError::Cancelled));
+            }
+            if began.elapsed() >= patience {
+                let seconds = patience.as_secs_f32();
+                self.status
+                    .lose(&format!("it did not answer for {seconds} s"));
+                self.check()?;
+            }
         }
-    }
-}
-
-impl Gpu {
-    /// Whether all work is done, or soon is.
-    fn is_idle(&self) -> bool {
-        let wait = PollType::Wait {
-            submission_index: None,
-            timeout: Some(GOODBYE),
-        };
-        matches!(
-            catch_unwind(AssertUnwindSafe(|| self.device.poll(wait))),
-            Ok(Ok(status)) if status.is_queue_empty()
-        )
     }
 }
 
@@ -294,7 +331,7 @@ impl Gpu {
 /// process lives on with the device instead, and with what little of it the driver has not freed.
 impl Drop for Gpu {
     fn drop(&mut self) {
-        if get(&self.status.lost).is_some() || !self.is_idle() {
+        if get(&self.status.lost).is_some() || !self.host.is_idle(&self.device) {
             tracing::debug!("{} is left as it is", self.info.title());
             std::mem::forget(self.queue.clone());
         }

@@ -71,6 +71,20 @@ pub enum GpuError {
         /// The most that is allowed.
         limit: u64,
     },
+    /// A list of the scene is longer than a texture may be.
+    #[error("the scene has {count} {unit}, {adapter} holds {limit}: the largest is {largest}")]
+    Texels {
+        /// What the list is of.
+        unit: &'static str,
+        /// How long it is.
+        count: u64,
+        /// The adapter.
+        adapter: String,
+        /// The most that is allowed.
+        limit: u64,
+        /// What takes most of it.
+        largest: String,
+    },
     /// There is not enough memory, even for a small part of the picture at a time.
     #[error("out of memory on {adapter}: {bytes} bytes cannot be had")]
     OutOfMemory {
@@ -117,6 +131,7 @@ impl GpuError {
             GpuError::Limit { .. } | GpuError::NoCompute { .. } => {
                 Some("choose another adapter, or render on the CPU")
             }
+            GpuError::Texels { .. } => Some("use smaller ones, or render on the CPU"),
             GpuError::OutOfMemory { .. } => {
                 Some("close what else uses the GPU, or render on the CPU")
             }

@@ -1,14 +1,16 @@
 //! Submissions on their way: dispatches are collected, submitted, timed and waited for.
 
-use crate::device::{Gpu, Work};
+use crate::device::{Gpu, Submission, Work};
 use crate::error::GpuError;
+use crate::host::Signal;
 use crate::pace::{Area, TARGET};
 use crate::pipeline::{Pipelines, STAGES};
 use crate::timing::Stage;
 use std::collections::VecDeque;
+use std::ops::RangeBounds;
 use std::sync::Arc;
 use web_time::Instant;
-use wgpu::{BindGroup, Buffer, BufferUsages, CommandEncoder, MapMode, QuerySet, SubmissionIndex};
+use wgpu::{BindGroup, Buffer, BufferUsages, CommandEncoder, MapMode, QuerySet};
 use zeroset_shader::entry::{Binding, ENTRIES};
 use zeroset_shader::layout::Tile;
 
@@ -57,7 +59,9 @@ struct Stamps {
 }
 
 struct Flown {
-    submission: SubmissionIndex,
+    submission: Submission,
+    /// Buffers that must be mapped too.
+    mapped: Vec<Signal>,
     began: Instant,
     dispatches: Vec<Dispatch>,
     stamps: Option<Stamps>,
@@ -83,10 +87,10 @@ pub(crate) struct Flight {
 }
 
 impl Flight {
-    pub(crate) fn new(gpu: &Arc<Gpu>) -> Result<Flight, GpuError> {
+    pub(crate) async fn new(gpu: &Arc<Gpu>) -> Result<Flight, GpuError> {
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
         Ok(Flight {
-            tiles: gpu.buffer("tiles", STRIDE * TOGETHER as u64, usage)?,
+            tiles: gpu.buffer("tiles", STRIDE * TOGETHER as u64, usage).await?,
             gpu: Arc::clone(gpu),
             encoder: None,
             open: Vec::new(),
@@ -112,7 +116,7 @@ impl Flight {
     }
 
     /// Records a dispatch. `groups` are workgroups across and down.
-    pub(crate) fn dispatch(
+    pub(crate) async fn dispatch(
         &mut self,
         with: &Equipment<'_>,
         dispatch: Dispatch,
@@ -120,7 +124,7 @@ impl Flight {
         index: u32,
     ) -> Result<(), GpuError> {
         if self.open.is_empty() {
-            self.prepare_stamps()?;
+            self.prepare_stamps().await?;
         }
         let number = self.open.len();
         let tile = Tile {
@@ -160,31 +164,32 @@ impl Flight {
     }
 
     /// Makes sure that there are stamps for the next submission, if the GPU has a clock.
-    fn prepare_stamps(&mut self) -> Result<(), GpuError> {
+    async fn prepare_stamps(&mut self) -> Result<(), GpuError> {
         if self.gpu.tick.is_none() || !self.spare.is_empty() {
             return Ok(());
         }
         let count = 2 * TOGETHER as u32;
         let bytes = 8 * u64::from(count);
-        let set = self.gpu.watched(bytes, || {
+        let make = || {
             self.gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: None,
                 ty: wgpu::QueryType::Timestamp,
                 count,
             })
-        })?;
+        };
+        let set = self.gpu.watched(bytes, make).await?;
         let resolved = BufferUsages::QUERY_RESOLVE | BufferUsages::COPY_SRC;
         let read = BufferUsages::MAP_READ | BufferUsages::COPY_DST;
         self.spare.push(Stamps {
             set,
-            resolved: self.gpu.buffer("resolved timestamps", bytes, resolved)?,
-            read: self.gpu.buffer("read timestamps", bytes, read)?,
+            resolved: (self.gpu.buffer("resolved timestamps", bytes, resolved)).await?,
+            read: self.gpu.buffer("read timestamps", bytes, read).await?,
         });
         Ok(())
     }
 
     /// Submits what is recorded, if anything, and tells `watcher` of submissions that had to be waited for.
-    pub(crate) fn flush(&mut self, watcher: &mut dyn Watcher) -> Result<(), GpuError> {
+    pub(crate) async fn flush(&mut self, watcher: &mut dyn Watcher) -> Result<(), GpuError> {
         let Some(mut encoder) = self.encoder.take() else {
             return Ok(());
         };
@@ -202,14 +207,14 @@ impl Flight {
             encoder.copy_buffer_to_buffer(&stamps.resolved, 0, &stamps.read, 0, bytes);
         }
         let began = Instant::now();
-        let submission = self.gpu.submit(encoder)?;
+        let submission = self.gpu.submit(encoder).await?;
         self.submissions += 1;
-        if let Some(stamps) = &stamps {
-            // the wait below runs this; what it says is seen when the range is asked for
-            stamps.read.map_async(MapMode::Read, .., |_| {});
-        }
+        let mapped = (stamps.iter())
+            .map(|stamps| map(&stamps.read, ..))
+            .collect();
         self.flying.push_back(Flown {
             submission,
+            mapped,
             began,
             dispatches,
             stamps,
@@ -220,37 +225,55 @@ impl Flight {
             },
         });
         while self.flying.len() > AHEAD {
-            self.land(watcher)?;
+            self.land(watcher).await?;
         }
         Ok(())
     }
 
     /// Submits what is recorded and waits for everything.
-    pub(crate) fn finish(&mut self, watcher: &mut dyn Watcher) -> Result<(), GpuError> {
-        self.flush(watcher)?;
+    pub(crate) async fn finish(&mut self, watcher: &mut dyn Watcher) -> Result<(), GpuError> {
+        self.flush(watcher).await?;
         while !self.flying.is_empty() {
-            self.land(watcher)?;
+            self.land(watcher).await?;
         }
         Ok(())
     }
 
+    /// Submits what is recorded, waits for everything, and has a range of a buffer mapped then.
+    pub(crate) async fn finish_and_map(
+        &mut self,
+        buffer: &Buffer,
+        range: impl RangeBounds<u64>,
+        watcher: &mut dyn Watcher,
+    ) -> Result<(), GpuError> {
+        self.flush(watcher).await?;
+        let mapped = map(buffer, range);
+        if let Some(last) = self.flying.back_mut() {
+            last.mapped.push(mapped);
+        }
+        self.finish(watcher).await
+    }
+
     /// Forgets what is recorded, and waits for what is on its way: not as long as a driver may compile, since nobody needs it
     /// any more.
-    pub(crate) fn drain(&mut self, watcher: &mut dyn Watcher) -> Result<(), GpuError> {
+    pub(crate) async fn drain(&mut self, watcher: &mut dyn Watcher) -> Result<(), GpuError> {
         self.flying.iter_mut().for_each(|f| f.work = Work::Left);
         self.encoder = None;
         self.open.clear();
         self.written.clear();
-        self.finish(watcher)
+        self.finish(watcher).await
     }
 
     /// Waits for the oldest submission.
-    fn land(&mut self, watcher: &mut dyn Watcher) -> Result<(), GpuError> {
+    async fn land(&mut self, watcher: &mut dyn Watcher) -> Result<(), GpuError> {
         let Some(flown) = self.flying.front() else {
             return Ok(());
         };
         // what is not waited for to the end stays on its way
-        (self.gpu).wait(&flown.submission, flown.work, &|| watcher.stops())?;
+        let stop = || watcher.stops();
+        (self.gpu)
+            .wait(&flown.submission, &flown.mapped, flown.work, &stop)
+            .await?;
         let Some(flown) = self.flying.pop_front() else {
             return Ok(());
         };
@@ -279,6 +302,14 @@ impl Flight {
         self.spare.extend(flown.stamps);
         Ok(())
     }
+}
+
+/// Asks for a range of a buffer to be mapped. Whether it could be is seen when the range is asked for.
+fn map(buffer: &Buffer, range: impl RangeBounds<u64>) -> Signal {
+    let mapped = Signal::default();
+    let told = mapped.clone();
+    buffer.map_async(MapMode::Read, range, move |_| told.give());
+    mapped
 }
 
 fn new_encoder(gpu: &Gpu) -> CommandEncoder {

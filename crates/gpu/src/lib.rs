@@ -23,19 +23,24 @@
 //! | `device` | the device, and everything that a driver can fail at |
 //! | `pipeline` | shaders, compiled once for scenes of equal structure |
 //! | `band`, `memory` | what fits into the device's memory, and the buffers |
+//! | `texture` | what is too long for buffers: images, grids |
 //! | `pace` | how large a tile is, from what earlier ones took |
 //! | `flight` | submissions on their way, and the GPU's clock |
 //! | `picture` | one picture: bands, stages, tiles |
 //! | `renderer` | the renderer, and what is done when the device fails |
+//! | `host` | what is left to whoever runs all that: to wait, to compile beside other work |
+//! | `blocking` | the renderer of native programs, which wait |
 
 #![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
 mod adapter;
 mod band;
+mod blocking;
 mod device;
 mod error;
 mod fault;
 mod flight;
+mod host;
 mod memory;
 mod pace;
 mod picture;
@@ -43,11 +48,11 @@ mod pipeline;
 mod renderer;
 #[doc(hidden)]
 pub mod testing;
+mod texture;
 mod timing;
 
-pub use adapter::{AdapterInfo, Choice, Kind, adapters};
-pub use device::Gpu;
+pub use adapter::{AdapterInfo, Choice, Kind};
+pub use blocking::{GpuRenderer, adapters};
 pub use error::GpuError;
-pub use renderer::GpuRenderer;
 pub use timing::{StageSeconds, Timings};
 pub use zeroset_shader::{FieldForm, Job};

@@ -11,7 +11,6 @@ use crate::timing::{Stage, Timings};
 use std::ops::Range;
 use std::sync::Arc;
 use web_time::Instant;
-use wgpu::MapMode;
 use zeroset_scene::accumulator::{Accumulator, Sum};
 use zeroset_scene::render::{Evaluations, Observer, RenderError, Statistics};
 use zeroset_shader::Job;
@@ -134,7 +133,7 @@ impl Course {
 
 impl Bench<'_> {
     /// Adds samples to the sums of a picture of the job's size, from the row on that it has reached.
-    pub(crate) fn render(
+    pub(crate) async fn render(
         &mut self,
         job: &Job,
         samples: &Range<u32>,
@@ -155,8 +154,9 @@ impl Bench<'_> {
                 notes: self.notes(job),
             };
             let rows = room.band(job, first, &sums, &self.gpu.info().title())?;
-            let (numbers, counters) =
-                self.band(job, [first, rows], samples, &sums, progress, timings)?;
+            let (numbers, counters) = self
+                .band(job, [first, rows], samples, &sums, progress, timings)
+                .await?;
             into.add_rows(first, rows, &numbers);
             let (pairs, _) = counters.as_chunks::<2>();
             for (sum, [low, high]) in course.counted.iter_mut().zip(pairs) {
@@ -200,7 +200,7 @@ impl Bench<'_> {
     }
 
     /// Renders `rows`: the first and how many. Gives the numbers of their sums.
-    fn band(
+    async fn band(
         &mut self,
         job: &Job,
         rows: [u32; 2],
@@ -213,14 +213,10 @@ impl Bench<'_> {
         let notes = self.notes(job);
         let sizes = Sizes::new(&frame, sums, notes);
         progress.check()?;
-        self.memory.fill(
-            self.gpu,
-            self.layouts,
-            &self.flight.tiles,
-            job,
-            &frame,
-            &sizes,
-        )?;
+        let (gpu, tiles) = (self.gpu, &self.flight.tiles);
+        timings.uploaded += (self.memory)
+            .fill(gpu, self.layouts, tiles, job, &frame, &sizes)
+            .await?;
         // until all of it is done, it may be
         self.memory.is_mapped = true;
         let (Some(groups), Some(counters), Some(read)) = (
@@ -254,35 +250,37 @@ impl Bench<'_> {
         };
         let (stored, given) = (across(from, stored), across(rows[0], rows[1]));
         if !self.set.is_warm {
-            run.warm_up(given)?;
+            run.warm_up(given).await?;
             self.set.is_warm = true;
         }
         run.flight.encoder().clear_buffer(counters, 0, None);
         if job.prepass() {
-            run.cones(Stage::ConesWide, &frame, stored, CONE_SIDES[0])?;
-            run.cones(Stage::ConesNarrow, &frame, stored, CONE_SIDES[1])?;
+            let [wide, narrow] = CONE_SIDES;
+            run.cones(Stage::ConesWide, &frame, stored, wide).await?;
+            run.cones(Stage::ConesNarrow, &frame, stored, narrow)
+                .await?;
         }
         for sample in samples.clone() {
             if job.in_turns {
-                run.turns(stored, sample)?;
+                run.turns(stored, sample).await?;
             } else {
-                run.tiles(Stage::Trace, stored, sample)?;
+                run.tiles(Stage::Trace, stored, sample).await?;
                 if !self.set.is_proven && sample + 1 < samples.end {
                     // the other rays of a scene that needs turns need not be traced
-                    check(run.gpu, &run.counted()?)?;
+                    check(run.gpu, &run.counted().await?)?;
                 }
             }
-            run.tiles(Stage::Gather, given, sample)?;
+            run.tiles(Stage::Gather, given, sample).await?;
         }
-        run.tiles(Stage::Develop, given, 0)?;
-        let (numbers, counters) = self.read(&frame, &sizes, progress, timings)?;
+        run.tiles(Stage::Develop, given, 0).await?;
+        let (numbers, counters) = self.read(&frame, &sizes, progress, timings).await?;
         check(self.gpu, &counters)?;
         self.set.is_proven = true;
         Ok((numbers, counters))
     }
 
     /// Reads the finished sums of a band.
-    fn read(
+    async fn read(
         &mut self,
         frame: &Frame,
         sizes: &Sizes,
@@ -310,10 +308,7 @@ impl Bench<'_> {
             progress,
             timings,
         };
-        self.flight.flush(&mut notes)?;
-        // what it says is seen when the range is asked for
-        read.map_async(MapMode::Read, .., |_| {});
-        self.flight.finish(&mut notes)?;
+        self.flight.finish_and_map(read, .., &mut notes).await?;
         let mapped = read.get_mapped_range(..sizes.read);
         let found = match &mapped {
             Ok(view) => unpack(view, sizes.planes),
@@ -413,7 +408,7 @@ struct Run<'a, 'o> {
 impl Run<'_, '_> {
     /// Runs every pipeline once on as little as can be, for drivers that compile when a pipeline is run. What they write is
     /// written again later.
-    fn warm_up(&mut self, given: Area) -> Result<(), GpuError> {
+    async fn warm_up(&mut self, given: Area) -> Result<(), GpuError> {
         let began = Instant::now();
         let area = Area {
             corner: given.corner,
@@ -427,18 +422,24 @@ impl Run<'_, '_> {
             Stage::Develop,
         ];
         self.flight.compiles = true;
-        let run = stages.into_iter().try_for_each(|stage| {
+        let mut run = Ok(());
+        for stage in stages {
             let dispatch = self.dispatch(stage, area, Some(0.0));
-            self.record(dispatch, [1, 1], 0)?;
-            self.flight.finish(self.notes.progress)
-        });
+            run = self.record(dispatch, [1, 1], 0).await;
+            if run.is_ok() {
+                run = self.flight.finish(self.notes.progress).await;
+            }
+            if run.is_err() {
+                break;
+            }
+        }
         self.flight.compiles = false;
         self.notes.timings.compile += began.elapsed().as_secs_f64();
         run
     }
 
     /// Marches all cones of a size.
-    fn cones(
+    async fn cones(
         &mut self,
         stage: Stage,
         frame: &Frame,
@@ -449,34 +450,34 @@ impl Run<'_, '_> {
         let predicted = known.dearest().map(|rate| rate * area.pixels() as f64);
         let groups = frame.cells(side).map(|n| n.div_ceil(WORKGROUP));
         if predicted.is_none() {
-            self.finish()?;
+            self.finish().await?;
         }
         let dispatch = self.dispatch(stage, area, predicted);
-        self.add(dispatch, groups, 0)?;
+        self.add(dispatch, groups, 0).await?;
         if predicted.is_none() {
-            self.finish()?;
+            self.finish().await?;
         }
         Ok(())
     }
 
     /// Dispatches an area in tiles.
-    fn tiles(&mut self, stage: Stage, area: Area, index: u32) -> Result<(), GpuError> {
+    async fn tiles(&mut self, stage: Stage, area: Area, index: u32) -> Result<(), GpuError> {
         let mut cutter = Cutter::new(area, self.notes.size[1]);
         while let Some(tile) = cutter.next(&self.notes.costs[stage as usize]) {
             if tile.is_guess {
-                self.finish()?;
+                self.finish().await?;
             }
             let dispatch = self.dispatch(stage, tile.area, tile.predicted);
-            self.add(dispatch, tile.area.groups(), index)?;
+            self.add(dispatch, tile.area.groups(), index).await?;
             if tile.is_guess {
-                self.finish()?;
+                self.finish().await?;
             }
         }
         Ok(())
     }
 
     /// Traces an area in turns: each dispatch answers one question of every ray, until none has any left.
-    fn turns(&mut self, area: Area, index: u32) -> Result<(), GpuError> {
+    async fn turns(&mut self, area: Area, index: u32) -> Result<(), GpuError> {
         let most = self.words / (WORDS + self.registers);
         let mut cutter = Cutter::new(area, self.notes.size[1]).at_most(most);
         while let Some(tile) = cutter.next(&self.notes.costs[Stage::Trace as usize]) {
@@ -490,10 +491,10 @@ impl Run<'_, '_> {
                         let waits = 4 * WAITING as u64;
                         (self.flight.encoder()).clear_buffer(self.counters, waits, Some(4));
                     }
-                    self.add(dispatch, tile.area.groups(), index)?;
+                    self.add(dispatch, tile.area.groups(), index).await?;
                     dispatch.turn += 1;
                 }
-                let counters = self.counted()?;
+                let counters = self.counted().await?;
                 check(self.gpu, &counters)?;
                 waiting = counters[WAITING] != 0;
             }
@@ -502,13 +503,12 @@ impl Run<'_, '_> {
     }
 
     /// The counters after all that is recorded.
-    fn counted(&mut self) -> Result<Counters, GpuError> {
+    async fn counted(&mut self) -> Result<Counters, GpuError> {
         let encoder = self.flight.encoder();
         encoder.copy_buffer_to_buffer(self.counters, 0, self.read, 0, COUNTER_BYTES);
-        self.flight.flush(&mut self.notes)?;
-        // what it says is seen when the range is asked for
-        (self.read).map_async(MapMode::Read, ..COUNTER_BYTES, |_| {});
-        self.flight.finish(&mut self.notes)?;
+        (self.flight)
+            .finish_and_map(self.read, ..COUNTER_BYTES, &mut self.notes)
+            .await?;
         let counted = match self.read.get_mapped_range(..COUNTER_BYTES) {
             Ok(view) => counters(&view),
             Err(error) => return Err(without(self.gpu, &error.to_string())),
@@ -530,24 +530,34 @@ impl Run<'_, '_> {
         }
     }
 
-    fn add(&mut self, dispatch: Dispatch, groups: [u32; 2], index: u32) -> Result<(), GpuError> {
+    async fn add(
+        &mut self,
+        dispatch: Dispatch,
+        groups: [u32; 2],
+        index: u32,
+    ) -> Result<(), GpuError> {
         if self.flight.is_full(dispatch.predicted) {
             self.notes.progress.check()?;
-            self.flight.flush(&mut self.notes)?;
+            self.flight.flush(&mut self.notes).await?;
         }
-        self.record(dispatch, groups, index)
+        self.record(dispatch, groups, index).await
     }
 
-    fn record(&mut self, dispatch: Dispatch, groups: [u32; 2], index: u32) -> Result<(), GpuError> {
+    async fn record(
+        &mut self,
+        dispatch: Dispatch,
+        groups: [u32; 2],
+        index: u32,
+    ) -> Result<(), GpuError> {
         let with = Equipment {
             pipelines: self.pipelines,
             groups: self.groups,
         };
-        self.flight.dispatch(&with, dispatch, groups, index)
+        (self.flight).dispatch(&with, dispatch, groups, index).await
     }
 
-    fn finish(&mut self) -> Result<(), GpuError> {
+    async fn finish(&mut self) -> Result<(), GpuError> {
         self.notes.progress.check()?;
-        self.flight.finish(&mut self.notes)
+        self.flight.finish(&mut self.notes).await
     }
 }

@@ -5,24 +5,17 @@ use crate::error::GpuError;
 use crate::pace::Costs;
 use std::num::NonZeroU64;
 use std::sync::Arc;
-use std::sync::mpsc::{self, RecvTimeoutError};
-use std::thread;
-use std::time::Duration;
-use web_time::Instant;
 use wgpu::{
     BindGroupLayout, BindGroupLayoutEntry, BindingType, BufferBindingType, ComputePipeline,
-    PipelineCompilationOptions, PipelineLayout, ShaderStages,
+    PipelineCompilationOptions, PipelineLayout, ShaderStages, TextureSampleType,
+    TextureViewDimension,
 };
-use zeroset_scene::render::{Observer, RenderError};
+use zeroset_scene::render::Observer;
 use zeroset_shader::entry::{Binding, ENTRIES, UNIFORM_NUMBERS, UNIFORM_ROWS};
 use zeroset_shader::layout::{Frame, Tile};
 
 /// Entry points.
 pub(crate) const STAGES: usize = ENTRIES.len();
-/// How long a driver may compile.
-const PATIENCE: Duration = Duration::from_secs(120);
-/// Parsing and the compilers of drivers recurse along expressions: main threads of some systems have 1 MiB.
-const STACK: usize = 64 << 20;
 /// Sets that are kept.
 const KEPT: usize = 24;
 
@@ -33,7 +26,7 @@ pub(crate) struct Layouts {
 }
 
 impl Layouts {
-    pub(crate) fn new(gpu: &Gpu) -> Result<Layouts, GpuError> {
+    pub(crate) async fn new(gpu: &Gpu) -> Result<Layouts, GpuError> {
         gpu.watched(0, || {
             let group = |entry: &zeroset_shader::entry::Entry| {
                 let entries: Vec<_> = entry.bindings.iter().map(|b| layout(*b)).collect();
@@ -55,11 +48,29 @@ impl Layouts {
             let pipelines = groups.iter().map(pipeline).collect();
             Layouts { groups, pipelines }
         })
+        .await
     }
 }
 
-/// How a shader sees a buffer.
+/// How a shader sees a buffer or a texture.
 fn layout(binding: Binding) -> BindGroupLayoutEntry {
+    BindGroupLayoutEntry {
+        binding: binding as u32,
+        visibility: ShaderStages::COMPUTE,
+        ty: if binding.is_texture() {
+            BindingType::Texture {
+                sample_type: TextureSampleType::Float { filterable: false },
+                view_dimension: TextureViewDimension::D2Array,
+                multisampled: false,
+            }
+        } else {
+            buffer_layout(binding)
+        },
+        count: None,
+    }
+}
+
+fn buffer_layout(binding: Binding) -> BindingType {
     let storage = |read_only| BufferBindingType::Storage { read_only };
     let (ty, size) = match binding {
         Binding::Frame => (storage(true), size_of::<Frame>()),
@@ -69,15 +80,10 @@ fn layout(binding: Binding) -> BindGroupLayoutEntry {
         Binding::Rows => (BufferBindingType::Uniform, 16 * UNIFORM_ROWS),
         _ => (storage(false), 0),
     };
-    BindGroupLayoutEntry {
-        binding: binding as u32,
-        visibility: ShaderStages::COMPUTE,
-        ty: BindingType::Buffer {
-            ty,
-            has_dynamic_offset: binding == Binding::Tile,
-            min_binding_size: NonZeroU64::new(size as u64),
-        },
-        count: None,
+    BindingType::Buffer {
+        ty,
+        has_dynamic_offset: binding == Binding::Tile,
+        min_binding_size: NonZeroU64::new(size as u64),
     }
 }
 
@@ -107,7 +113,7 @@ impl Cache {
     ///
     /// # Errors
     /// It does not compile, or not in time, or the observer asked to stop.
-    pub(crate) fn get(
+    pub(crate) async fn get(
         &mut self,
         gpu: &Arc<Gpu>,
         layouts: &Arc<Layouts>,
@@ -119,7 +125,7 @@ impl Cache {
             Some(at) => self.sets.remove(at),
             None => Set {
                 source: Arc::clone(source),
-                pipelines: compile_apart(gpu, layouts, source, observer)?,
+                pipelines: gpu.host.compile(gpu, layouts, source, observer).await?,
                 costs: Default::default(),
                 is_warm: false,
                 is_proven: false,
@@ -134,52 +140,15 @@ impl Cache {
     }
 }
 
-/// Compiles on a thread with a large stack, which is left behind if the driver does not come back.
-#[allow(
-    clippy::disallowed_methods,
-    reason = "drivers of systems, which have threads"
-)]
-fn compile_apart(
-    gpu: &Arc<Gpu>,
-    layouts: &Arc<Layouts>,
-    source: &Arc<str>,
-    observer: &dyn Observer,
+/// Compiles the entry points of a shader.
+///
+/// # Errors
+/// What the compiler says.
+pub(crate) async fn compile(
+    gpu: &Gpu,
+    layouts: &Layouts,
+    source: &str,
 ) -> Result<Pipelines, GpuError> {
-    let (tell, told) = mpsc::channel();
-    let apart = (Arc::clone(gpu), Arc::clone(layouts), Arc::clone(source));
-    let began = Instant::now();
-    thread::Builder::new()
-        .name("compile shader".to_owned())
-        .stack_size(STACK)
-        .spawn(move || {
-            // nobody listens any more: the rendering was cancelled
-            let _ = tell.send(compile(&apart.0, &apart.1, &apart.2));
-        })
-        .map_err(|error| GpuError::Shader {
-            log: format!("no thread can be started for it: {error}"),
-        })?;
-    loop {
-        match told.recv_timeout(Duration::from_millis(20)) {
-            Ok(compiled) => return compiled,
-            Err(RecvTimeoutError::Disconnected) => {
-                return Err(GpuError::Shader {
-                    log: "the compiler failed".to_owned(),
-                });
-            }
-            Err(RecvTimeoutError::Timeout) if observer.is_cancelled() => {
-                return Err(GpuError::Scene(RenderError::Cancelled));
-            }
-            Err(RecvTimeoutError::Timeout) if began.elapsed() > PATIENCE => {
-                return Err(GpuError::SlowCompiler {
-                    seconds: PATIENCE.as_secs(),
-                });
-            }
-            Err(RecvTimeoutError::Timeout) => {}
-        }
-    }
-}
-
-fn compile(gpu: &Gpu, layouts: &Layouts, source: &str) -> Result<Pipelines, GpuError> {
     let failed = |error: GpuError| match error {
         GpuError::Refused { reason: log, .. } => GpuError::Shader { log },
         other => other,
@@ -192,6 +161,7 @@ fn compile(gpu: &Gpu, layouts: &Layouts, source: &str) -> Result<Pipelines, GpuE
                     source: wgpu::ShaderSource::Wgsl(source.into()),
                 })
         })
+        .await
         .map_err(failed)?;
     let stages = gpu
         .watched(0, || {
@@ -207,6 +177,7 @@ fn compile(gpu: &Gpu, layouts: &Layouts, source: &str) -> Result<Pipelines, GpuE
                     })
             })
         })
+        .await
         .map_err(failed)?;
     Ok(stages)
 }

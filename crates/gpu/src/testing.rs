@@ -1,8 +1,8 @@
 //! For tests of this and other crates.
 
 use crate::adapter::Choice;
+use crate::blocking::GpuRenderer;
 pub use crate::fault::Faults;
-use crate::renderer::GpuRenderer;
 
 /// A renderer on any adapter, software included. Where there is none, says so and gives none, unless the environment has
 /// `ZEROSET_REQUIRE_GPU=1`.

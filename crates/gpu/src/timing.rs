@@ -35,6 +35,8 @@ pub struct Timings {
     pub by_timestamps: bool,
     /// Parts that the picture was rendered in, one after the other.
     pub bands: u32,
+    /// Bytes of parameters, tables, images and grids that the GPU did not have yet.
+    pub uploaded: u64,
     /// Dispatches.
     pub dispatches: u32,
     /// Submissions.
@@ -72,6 +74,7 @@ impl Timings {
             stages: StageSeconds::default(),
             by_timestamps: false,
             bands: 0,
+            uploaded: 0,
             dispatches: 0,
             submissions: 0,
             longest: 0.0,

@@ -1,12 +1,18 @@
 //! Scenes, from their text to a film. That films are those of the CPU is the conformance suite's to say.
 
+use glam::Vec3;
 use std::fmt::Write;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 use zeroset_gpu::{FieldForm, GpuError, testing};
 use zeroset_language::load::{Language, Options, load_text};
+use zeroset_scene::accumulator::Accumulator;
+use zeroset_scene::camera::Camera;
 use zeroset_scene::film::Plane;
+use zeroset_scene::material::{Image, Pattern};
 use zeroset_scene::render::{Observer, RenderError, Renderer, Silent};
 use zeroset_scene::scene::Scene;
+use zeroset_scene::settings::Antialias;
 
 fn scene(text: &str) -> Scene {
     let options = Options {
@@ -56,6 +62,91 @@ fn a_scene_of_nothing_is_a_sky() {
     let frame = renderer.render(&scene, &Silent).expect("a picture");
     assert_eq!(frame.statistics.hits, 0);
     assert!(frame.film.plane(Plane::Coverage).iter().all(|c| *c == 0.0));
+}
+
+/// An image of one colour, and its bytes on the GPU.
+fn image(side: u32, colour: Vec3) -> (Arc<Image>, u64) {
+    let pixels = vec![colour; (side * side) as usize];
+    let image = Image {
+        path: "one.png".into(),
+        width: side,
+        height: side,
+        pixels,
+    };
+    (Arc::new(image), 16 * u64::from(side * side))
+}
+
+/// A scene that shows these images.
+fn shown(images: &[&Arc<Image>], specular: f32) -> Arc<Scene> {
+    let mut scene = scene("show(box(1))\ncamera((0, 0, 4), (0, 0, 0), fov = 40)");
+    scene
+        .edit(|s| {
+            let material = s.materials[0].clone();
+            for image in images {
+                let mut material = material.clone();
+                material.specular = specular;
+                material.pattern = Pattern::Triplanar {
+                    image: Arc::clone(image),
+                    size: 1.0,
+                    sharpness: 4.0,
+                };
+                s.materials.push(material);
+            }
+            s.objects[0].material = images.len() as u16;
+        })
+        .expect("a scene");
+    Arc::new(scene)
+}
+
+/// Neither a slider nor the camera sends an image again: only what is new is sent.
+#[test]
+fn an_image_is_sent_to_the_gpu_once() {
+    let Some(renderer) = testing::renderer("an_image_is_sent_to_the_gpu_once") else {
+        return;
+    };
+    let (red, red_bytes) = image(700, Vec3::X);
+    let (blue, blue_bytes) = image(2049, Vec3::Z);
+    let first = shown(&[&red], 0.1);
+    let mut prepared = renderer.prepare(Arc::clone(&first)).expect("a scene");
+    // a picture, the colour of the surface in its middle, and the bytes that were sent for it
+    let mut picture = |scene: &Arc<Scene>, camera: &Camera| {
+        prepared.update(Arc::clone(scene)).expect("a scene");
+        let mut sums = Accumulator::new([96, 64], Antialias::None, &[Plane::Albedo]);
+        (prepared.sample(camera, 0..1, &mut sums, &Silent)).expect("a picture");
+        let colours = sums.into_film().plane(Plane::Albedo).to_vec();
+        let middle = Vec3::from_slice(&colours[3 * (32 * 96 + 48)..][..3]);
+        let timings = renderer.timings().expect("a picture was made");
+        (middle, timings.uploaded)
+    };
+    let camera = *first.camera();
+    let mut moved = camera;
+    moved.eye.x += 0.1;
+    let few = 1 << 16;
+    let (colour, bytes) = picture(&first, &camera);
+    assert_eq!(colour, Vec3::X);
+    assert!((red_bytes..red_bytes + few).contains(&bytes), "{bytes}");
+    assert_eq!(picture(&first, &moved), (Vec3::X, 0));
+    let (colour, bytes) = picture(&shown(&[&red], 0.2), &moved);
+    assert_eq!(colour, Vec3::X);
+    assert!((1..few).contains(&bytes), "{bytes} for a slider");
+    // there is no room for another one beside it: both are sent, once
+    let both = shown(&[&red, &blue], 0.2);
+    let (colour, bytes) = picture(&both, &camera);
+    assert_eq!(colour, Vec3::Z);
+    let all = red_bytes + blue_bytes;
+    assert!((all..all + few).contains(&bytes), "{bytes}");
+    assert_eq!(picture(&both, &camera), (Vec3::Z, 0));
+    // the same image is taken for the same, an equal one is sent again, and only that
+    let (other, _) = image(2049, Vec3::Y);
+    let (colour, bytes) = picture(&shown(&[&red, &other], 0.2), &camera);
+    assert_eq!(colour, Vec3::Y);
+    assert!((blue_bytes..blue_bytes + few).contains(&bytes), "{bytes}");
+    // a scene without images leaves them there
+    let (_, bytes) = picture(&shown(&[], 0.2), &camera);
+    assert!(bytes < few, "{bytes}");
+    let (colour, bytes) = picture(&shown(&[&red, &other], 0.2), &camera);
+    assert_eq!(colour, Vec3::Y);
+    assert!(bytes < few, "{bytes}");
 }
 
 /// Chains that need a register a link: drivers compile arrays of them slowly, or not at all.

@@ -3,12 +3,16 @@
 use glam::Vec3;
 use proptest::prelude::*;
 use std::collections::HashMap;
+use std::sync::Arc;
 use zeroset_catalogue::Dimension;
+use zeroset_catalogue::bounds::Aabb;
 use zeroset_catalogue::entries::catalogue;
 use zeroset_field::field::{Field, Node};
 use zeroset_field::placement::Placement;
+use zeroset_field::sampled::Sampled;
 use zeroset_language::json::{expand, to_text};
 use zeroset_language::load::{Language, Loaded, Options, load_text};
+use zeroset_number::Grid;
 use zeroset_scene::camera::Lens;
 use zeroset_scene::light::Source;
 use zeroset_scene::material::Pattern;
@@ -99,6 +103,18 @@ fn same(a: &Field, b: &Field, pairs: &mut HashMap<usize, usize>) {
         .iter()
         .zip(b.children())
         .for_each(|(a, b)| same(a, b, pairs));
+}
+
+#[test]
+fn a_field_of_samples_is_refused() {
+    let grid = Arc::new(Grid::new([2; 3], vec![1.0; 8]).unwrap());
+    let sampled = Sampled::new(grid, Aabb::centred([1.0; 3])).unwrap();
+    let field = Field::sampled(Arc::new(sampled));
+    let mut scene = load("a.star", "show(sphere())", Language::Starlark).scene;
+    let placed = field.place(Placement::moved([1.0; 3])).unwrap();
+    scene.edit(|s| s.objects[0].field = placed).unwrap();
+    let error = expand(&scene).unwrap_err();
+    assert!(error.to_string().contains("field of samples"), "{error}");
 }
 
 /// To JSON and back, and that nothing changed.

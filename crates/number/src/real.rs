@@ -130,7 +130,7 @@ pub(super) fn interpolate<R: Real>(
 /// Where a coordinate lies between the nodes of an axis, 0 to 1, and the first of the two.
 #[inline(always)]
 fn along_axis<R: Real>(c: R, nodes: R::Scalar) -> (R, R) {
-    let c = Ops::<R::Scalar>::min(c.max(0.0), nodes - 1.0);
+    let c = c.held(R::constant(0.0), nodes - 1.0);
     let first = Ops::<R::Scalar>::min(c.floor(), nodes - 2.0);
     (c - first, first)
 }
@@ -181,7 +181,7 @@ pub trait Real:
     /// such grid. Over ranges: of all nodes in the box.
     fn fetch(store: &Self::Store, grid: Self::Scalar, node: Vec3<Self>) -> Self;
     /// The samples of grid number `grid`, interpolated trilinearly at `p`, in nodes. The grid has `nodes` nodes along x, y and z;
-    /// beyond it, the nearest place of it counts.
+    /// beyond it, the nearest place of it counts, as in [`Real::held`].
     #[inline(always)]
     fn sample(
         store: &Self::Store,

@@ -1,4 +1,4 @@
-//! The entry points of a shader module, and the buffers that each uses.
+//! The entry points of a shader module, and the buffers and textures that each uses.
 
 /// Threads of a workgroup along each of two axes.
 pub const WORKGROUP: u32 = 8;
@@ -20,7 +20,7 @@ pub const UNIFORM_NUMBERS: usize = 4096;
 /// Rows in the uniform buffer of the table.
 pub const UNIFORM_ROWS: usize = 1024;
 
-/// A buffer of bind group 0.
+/// A buffer or a texture of bind group 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum Binding {
@@ -33,7 +33,7 @@ pub enum Binding {
     Params = 2,
     /// Instructions of an interpreted field: `array<u32>`, read only.
     Code = 3,
-    /// Lights, materials, objects, images: `array<vec4f>`, read only.
+    /// Lights, materials, objects: `array<vec4f>`, read only.
     Table = 4,
     /// Starts, slopes and radii of cones: `array<vec4f>`. Where rays are traced in turns there are no cones, and these are
     /// the rays' notes: `array<u32>`.
@@ -54,11 +54,15 @@ pub enum Binding {
     Numbers = 11,
     /// The table, if it has at most [`UNIFORM_ROWS`]: `array<vec4f>`, uniform.
     Rows = 12,
+    /// Pixels of images, in a [`texture`](crate::texture): `texture_2d_array<f32>`.
+    Images = 13,
+    /// Samples of grids, likewise.
+    Grids = 14,
 }
 
 impl Binding {
     /// All of them.
-    pub const ALL: [Binding; 13] = [
+    pub const ALL: [Binding; 15] = [
         Binding::Frame,
         Binding::Tile,
         Binding::Params,
@@ -72,7 +76,14 @@ impl Binding {
         Binding::Counters,
         Binding::Numbers,
         Binding::Rows,
+        Binding::Images,
+        Binding::Grids,
     ];
+
+    /// Whether it is a texture, else a buffer.
+    pub fn is_texture(self) -> bool {
+        matches!(self, Binding::Images | Binding::Grids)
+    }
 
     /// Its declaration in WGSL.
     pub(crate) fn declaration(self, in_turns: bool) -> String {
@@ -91,9 +102,15 @@ impl Binding {
             Binding::Counters => ("storage, read_write", "counters", "array<atomic<u32>, 18>"),
             Binding::Numbers => ("uniform", "numbers", "array<vec4f, 1024>"),
             Binding::Rows => ("uniform", "rows", "array<vec4f, 1024>"),
+            Binding::Images => ("", "images", "texture_2d_array<f32>"),
+            Binding::Grids => ("", "grids", "texture_2d_array<f32>"),
+        };
+        let space = match space {
+            "" => String::new(),
+            space => format!("<{space}>"),
         };
         format!(
-            "@group(0) @binding({}) var<{space}> {name}: {kind};\n",
+            "@group(0) @binding({}) var{space} {name}: {kind};\n",
             self as u32
         )
     }
@@ -116,6 +133,9 @@ pub const CONES_WIDE: Entry = Entry {
         Binding::Params,
         Binding::Numbers,
         Binding::Code,
+        Binding::Table,
+        Binding::Rows,
+        Binding::Grids,
         Binding::Cones,
         Binding::Counters,
     ],
@@ -136,6 +156,8 @@ pub const TRACE: Entry = Entry {
         Binding::Code,
         Binding::Table,
         Binding::Rows,
+        Binding::Images,
+        Binding::Grids,
         Binding::Cones,
         Binding::Samples,
         Binding::Counters,

@@ -5,6 +5,7 @@
 
 use crate::job::{FieldForm, Parts};
 use crate::layout::{Frame, Shared};
+use crate::texture;
 use naga::back::glsl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::fmt::Write;
@@ -12,7 +13,7 @@ use zeroset_field::program::Limits;
 use zeroset_scene::render::RenderError;
 use zeroset_scene::scene::Scene;
 
-/// Parameters, table rows and instructions that a file may have: compilers of shaders give up on more.
+/// Parameters, table rows, pixels of images, samples of grids and instructions that a file may have, of each: compilers of shaders give up on more.
 const LARGEST: usize = 4000;
 
 /// Why there is no file.
@@ -23,8 +24,7 @@ pub enum ExportError {
     Scene(#[from] RenderError),
     /// The scene is too large for one shader.
     #[error(
-        "the scene is too large for one shader: it has {count} {what}, {LARGEST} is the most that can be exported (images \
-         count a row a pixel)"
+        "the scene is too large for one shader: it has {count} {what}, {LARGEST} is the most that can be exported"
     )]
     Large {
         /// What there is too much of.
@@ -167,9 +167,14 @@ fn body(scene: &Scene) -> Result<String, ExportError> {
     let large = [
         ("instructions", parts.key.length()),
         ("parameters", parts.params.len()),
+        ("rows of lights, objects and materials", parts.table.len()),
         (
-            "numbers of lights, objects, materials and images",
-            parts.table.len(),
+            "pixels of images",
+            texture::starts(&parts.images).last().unwrap_or(0) as usize,
+        ),
+        (
+            "samples of grids",
+            texture::starts(&parts.grids).last().unwrap_or(0) as usize,
         ),
     ];
     if let Some((what, count)) = large.into_iter().find(|(_, count)| *count > LARGEST) {
@@ -187,13 +192,36 @@ fn body(scene: &Scene) -> Result<String, ExportError> {
         "f32",
         parts.params.iter().map(|&x| number(x)).collect(),
     );
-    let row = |r: &[f32; 4]| format!("vec4f({})", r.map(number).join(", "));
+    let row = |r: &[f32]| {
+        let numbers: Vec<String> = r.iter().map(|&x| number(x)).collect();
+        format!("vec{}f({})", r.len(), numbers.join(", "))
+    };
     list(
         &mut text,
         "table",
         "vec4f",
-        parts.table.iter().map(row).collect(),
+        parts.table.iter().map(|r| row(r)).collect(),
     );
+    if parts.key.shows_images() {
+        let pixels = parts.images.iter().flat_map(|image| &image.pixels);
+        list(
+            &mut text,
+            "images",
+            "vec3f",
+            pixels.map(|c| row(&c.to_array())).collect(),
+        );
+        text += IMAGE_TEXEL;
+    }
+    if parts.key.reads_grids() {
+        let samples = parts.grids.iter().flat_map(|grid| grid.values());
+        list(
+            &mut text,
+            "grids",
+            "f32",
+            samples.map(|&x| number(x)).collect(),
+        );
+        text += GRID_TEXEL;
+    }
     let _ = writeln!(
         text,
         "const EXPOSURE: f32 = {};",
@@ -226,6 +254,20 @@ fn pivot(frame: &Frame) -> f32 {
     }
     along.clamp(0.1, 1e4)
 }
+
+/// The function that reads a pixel of `images`, by its number.
+const IMAGE_TEXEL: &str = "
+fn image_texel(at: u32) -> vec3f {
+    return images[at];
+}
+";
+
+/// The function that reads a sample of `grids`, by its number.
+const GRID_TEXEL: &str = "
+fn grid_texel(at: u32) -> f32 {
+    return grids[at];
+}
+";
 
 /// An array of values that nobody changes. (WGSL indexes only variables by numbers that are not constant.)
 fn list(text: &mut String, name: &str, kind: &str, mut values: Vec<String>) {

@@ -1,18 +1,20 @@
 //! A scene as numbers for a shader: what changes from picture to picture, in buffers.
 
 use crate::entry::{CONE_SIDES, MARGIN};
-use crate::layout::{Frame, Light, Material, Occluder, rows};
+use crate::layout::{self, Frame, Light, Material, Occluder};
 use crate::source::{Key, number, pattern_kind, reach};
-use std::collections::HashMap;
+use crate::texture;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use zeroset_catalogue::bounds::Aabb;
 use zeroset_catalogue::entries::catalogue;
 use zeroset_field::field::Field;
 use zeroset_field::program::{Limits, Program};
+use zeroset_number::Grid;
 use zeroset_scene::accumulator::Sum;
 use zeroset_scene::camera::Camera;
 use zeroset_scene::light::Source as LightSource;
-use zeroset_scene::material::{self, Pattern};
+use zeroset_scene::material::{self, Image, Pattern};
 use zeroset_scene::render::RenderError;
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Filter, March, Occlusion, Shadow};
@@ -66,8 +68,12 @@ pub struct Job {
     pub params: Arc<[f32]>,
     /// Instructions of an interpreted field, else one word.
     pub code: Arc<[u32]>,
-    /// Lights, materials, objects, images.
+    /// Lights, materials, objects.
     pub table: Arc<[[f32; 4]]>,
+    /// Images of materials, in the order in which their texels lie in their [`texture`].
+    pub images: Arc<[Arc<Image>]>,
+    /// Grids of samples of the field, likewise.
+    pub grids: Arc<[Arc<Grid>]>,
     /// Words that the registers of an interpreted field take for each thread; 0 where the field is code.
     pub registers: u32,
     /// Whether each dispatch of rays answers one question of each to its field; else it traces them to the end.
@@ -103,6 +109,8 @@ impl Shaders {
             params: parts.params.into(),
             code: made.code,
             table: parts.table.into(),
+            images: parts.images.into(),
+            grids: parts.grids.into(),
             registers: made.registers,
             in_turns: false,
             turns,
@@ -152,6 +160,8 @@ pub(crate) struct Parts {
     pub(crate) frame: Frame,
     pub(crate) params: Vec<f32>,
     pub(crate) table: Vec<[f32; 4]>,
+    pub(crate) images: Vec<Arc<Image>>,
+    pub(crate) grids: Vec<Arc<Grid>>,
 }
 
 impl Parts {
@@ -173,7 +183,9 @@ impl Parts {
                 (Program::compile(&field, limits)?, Region::new(&Aabb::EMPTY))
             }
         };
-        let (table, mut frame) = tables(scene, frame(scene, &region));
+        let images = images(scene);
+        let grids = program.data().grids.clone();
+        let (table, mut frame) = tables(scene, &images, &grids, frame(scene, &region));
         frame.max_steps = program.patient(scene.settings().max_steps);
         frame.quality = u32::from(program.is_fractal())
             | u32::from(program.is_close()) << 1
@@ -183,6 +195,8 @@ impl Parts {
             frame,
             params: program.params().to_vec(),
             table,
+            images,
+            grids,
         })
     }
 }
@@ -316,8 +330,30 @@ fn seen(frame: Frame, camera: &Camera, size: [u32; 2], antialias: Antialias) -> 
     }
 }
 
+/// The images that materials show, each once.
+fn images(scene: &Scene) -> Vec<Arc<Image>> {
+    let mut seen = HashSet::new();
+    let shown = scene.materials().iter().filter_map(|m| image(&m.pattern));
+    shown
+        .filter(|image| seen.insert(Arc::as_ptr(image)))
+        .cloned()
+        .collect()
+}
+
+fn image(pattern: &Pattern) -> Option<&Arc<Image>> {
+    match pattern {
+        Pattern::Triplanar { image, .. } => Some(image),
+        _ => None,
+    }
+}
+
 /// The table, and the frame that knows where in it everything is.
-fn tables(scene: &Scene, mut frame: Frame) -> (Vec<[f32; 4]>, Frame) {
+fn tables(
+    scene: &Scene,
+    images: &[Arc<Image>],
+    grids: &[Arc<Grid>],
+    mut frame: Frame,
+) -> (Vec<[f32; 4]>, Frame) {
     let mut table = Vec::new();
     frame.lights = scene.lights().len() as u32;
     frame.light_rows = 0;
@@ -336,29 +372,37 @@ fn tables(scene: &Scene, mut frame: Frame) -> (Vec<[f32; 4]>, Frame) {
     frame.material_rows = table.len() as u32;
     frame.materials = scene.materials().len() as u32;
     let fallback = material::Material::default();
-    let mut image = table.len() + (scene.materials().len() + 1) * rows::<Material>();
-    let mut images = Vec::new();
-    // materials that show the same image share its rows
-    let mut places = HashMap::new();
+    let places: HashMap<*const Image, u64> = (images.iter().map(Arc::as_ptr))
+        .zip(texture::starts(images))
+        .collect();
     for material in scene.materials().iter().chain([&fallback]) {
-        let mut place = image;
-        if let Pattern::Triplanar { image: picture, .. } = &material.pattern {
-            place = *places.entry(Arc::as_ptr(picture)).or_insert_with(|| {
-                images.push(picture);
-                image += picture.pixels.len();
-                place
-            });
-        }
-        push(&mut table, material_row(material, place));
+        let place = image(&material.pattern).and_then(|image| places.get(&Arc::as_ptr(image)));
+        push(
+            &mut table,
+            material_row(material, place.copied().unwrap_or(0)),
+        );
     }
-    for picture in images {
-        table.extend(picture.pixels.iter().map(|c| [c.x, c.y, c.z, 0.0]));
+    frame.grid_rows = table.len() as u32;
+    for (grid, start) in grids.iter().zip(texture::starts(grids)) {
+        push(&mut table, grid_row(grid, start));
     }
     (table, frame)
 }
 
 fn push<T: bytemuck::Pod>(table: &mut Vec<[f32; 4]>, row: T) {
     table.extend_from_slice(bytemuck::cast_slice(std::slice::from_ref(&row)));
+}
+
+/// `start`: the first texel of its samples.
+pub(crate) fn grid_row(grid: &Grid, start: u64) -> layout::Grid {
+    let [nodes_x, nodes_y, _] = grid.nodes().map(|n| n as f32);
+    let [row, column] = texture::place(start);
+    layout::Grid {
+        nodes_x,
+        nodes_y,
+        row,
+        column,
+    }
 }
 
 fn light_row(light: &zeroset_scene::light::Light) -> Light {
@@ -413,8 +457,10 @@ fn occluder(method: Occlusion) -> Occluder {
     }
 }
 
-fn material_row(material: &material::Material, image: usize) -> Material {
+/// `image`: the first texel of its image.
+fn material_row(material: &material::Material, image: u64) -> Material {
     let zero = [0.0; 3];
+    let [image_row, image_column] = texture::place(image);
     let mut row = Material {
         kind: pattern_kind(&material.pattern) as f32,
         specular: material.specular,
@@ -422,7 +468,8 @@ fn material_row(material: &material::Material, image: usize) -> Material {
         metallic: material.metallic,
         roughness: material.roughness,
         emission: material.emission.to_array(),
-        image: image as f32,
+        image_row,
+        image_column,
         ..Material::default()
     };
     let mut colours = |all: &[glam::Vec3]| {

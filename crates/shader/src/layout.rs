@@ -157,10 +157,10 @@ shared! {
         detail: u32,
         /// The first of the rays a pixel that are traced now.
         first_ray: u32,
+        /// First row of the grids.
+        grid_rows: u32,
         /// Not used.
-        pad_a: u32,
-        /// Not used.
-        pad_b: u32,
+        pad: u32,
     }
 
     /// What one dispatch covers.
@@ -243,20 +243,32 @@ shared! {
         roughness: f32,
         /// Fourth colour, or where a gradient ends.
         d: [f32; 3],
-        /// First row of the image in the table.
-        image: f32,
+        /// Where the image begins: the row of its first texel through all layers of the texture.
+        image_row: f32,
         /// Light of its own.
         emission: [f32; 3],
         /// Width of the image.
         width: f32,
         /// Height of the image.
         height: f32,
+        /// Column of its first texel.
+        image_column: f32,
         /// Not used.
         pad_a: f32,
         /// Not used.
         pad_b: f32,
-        /// Not used.
-        pad_c: f32,
+    }
+
+    /// A grid of samples, as a row of the table.
+    Grid {
+        /// Nodes along x.
+        nodes_x: f32,
+        /// Nodes along y.
+        nodes_y: f32,
+        /// Where its samples begin: the row of the first texel through all layers of the texture.
+        row: f32,
+        /// Column of that texel.
+        column: f32,
     }
 
     /// What one ray found.

@@ -33,6 +33,7 @@ mod formulas;
 pub mod job;
 pub mod layout;
 mod source;
+pub mod texture;
 
 pub use field::{FieldSource, recorded};
 pub use job::{FieldForm, Job, Shaders, Turns};

@@ -6,12 +6,16 @@ use crate::field::FieldSource;
 use crate::formulas;
 use crate::job::{FieldForm, LONGEST_COMPILED};
 use crate::layout::{
-    Frame, Light, LightSum, Material, Occluder, Sample, Shared, SurfaceSum, Tile, loader, rows,
+    Frame, Grid, Light, LightSum, Material, Occluder, Sample, Shared, SurfaceSum, Tile, loader,
+    rows,
 };
+use crate::texture;
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::sync::Arc;
+use zeroset_catalogue::op::code;
+use zeroset_catalogue::tape::Operation;
 use zeroset_field::program::{Program, Structure};
 use zeroset_scene::material::Pattern;
 use zeroset_scene::methods::Choice;
@@ -94,6 +98,8 @@ struct Case {
     formulas: &'static [&'static str],
     /// Whether it sends rays over hemispheres.
     beams: bool,
+    /// Whether it reads an image.
+    has_image: bool,
 }
 
 impl PartialEq for Case {
@@ -156,6 +162,17 @@ impl Key {
         self.structure.values.instructions.len() + self.structure.marks.instructions.len()
     }
 
+    /// Whether a material shows an image.
+    pub(crate) fn shows_images(&self) -> bool {
+        self.patterns.iter().any(|case| case.has_image)
+    }
+
+    /// Whether the field has grids of samples.
+    pub(crate) fn reads_grids(&self) -> bool {
+        let mut steps = self.structure.values.instructions.iter();
+        steps.any(|step| step.operation == Operation::Leaf(code::SAMPLED))
+    }
+
     /// The same, but that rays are traced in turns.
     pub(crate) fn in_turns(&self) -> Key {
         Key {
@@ -191,6 +208,12 @@ impl Key {
             common = calls(&common, "table[", "table_at(") + ROW;
         }
         text += &common;
+        if self.shows_images() {
+            text += texture::IMAGE_TEXEL;
+        }
+        if self.reads_grids() {
+            text += texture::GRID_TEXEL;
+        }
         let stages: &[&str] = if self.in_turns {
             &[include_str!("stage/turns.wgsl")]
         } else {
@@ -215,8 +238,8 @@ impl Key {
         }
     }
 
-    /// What turns a ray into a sample: everything but buffers and entry points. It uses `frame`, `params`, `table` and, for a
-    /// field that is data, `code`.
+    /// What turns a ray into a sample: everything but buffers, textures and entry points. It uses `frame`, `params`, `table`,
+    /// `image_texel` where it shows images, `grid_texel` where it reads grids and, for a field that is data, `code`.
     pub(crate) fn picture(&self) -> Text {
         let mut field = if self.interpreted {
             if self.in_turns {
@@ -247,9 +270,13 @@ impl Key {
             // writing to a string cannot fail
             let _ = writeln!(text, "const {name}_ROWS: u32 = {rows}u;");
         }
+        text += &texture::side();
         text += &loader::<Light>();
         text += &loader::<Occluder>();
         text += &loader::<Material>();
+        if self.reads_grids() {
+            text += &grids();
+        }
         text += &constants::declarations();
         text += &field.text;
         for name in self.formulas() {
@@ -349,6 +376,17 @@ impl Key {
             "Openness(1.0, at.normal)",
         )
     }
+}
+
+/// What a field with grids calls: it reads `table`, `frame` and `grid_texel`.
+pub(crate) fn grids() -> String {
+    let rows = rows::<Grid>();
+    format!(
+        "{}const GRID_ROWS: u32 = {rows}u;\n{}\n{}",
+        Grid::declaration(),
+        loader::<Grid>(),
+        include_str!("stage/grid.wgsl")
+    )
 }
 
 /// The field under the names by which rays in turns ask it.
@@ -556,6 +594,7 @@ fn occlusion(method: &Occlusion) -> Option<Case> {
             call,
             formulas,
             beams,
+            has_image: false,
         })
     };
     match method {
@@ -624,6 +663,7 @@ fn pattern(pattern: &Pattern) -> Option<Case> {
             call,
             formulas,
             beams: false,
+            has_image: matches!(pattern, Pattern::Triplanar { .. }),
         })
     };
     match pattern {

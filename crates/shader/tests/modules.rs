@@ -5,14 +5,18 @@ use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use zeroset_catalogue::bounds::Aabb;
+use zeroset_field::field::Field;
+use zeroset_field::sampled::Sampled;
 use zeroset_language::load::{Language, Options, load, load_text};
+use zeroset_number::Grid;
 use zeroset_scene::material::{Image, Pattern};
 use zeroset_scene::scene::{Scene, SceneParts};
 use zeroset_scene::settings::{Antialias, Filter, March, Normals, Occlusion, Shading, Shadow};
 use zeroset_shader::entry::{Binding, ENTRIES};
 use zeroset_shader::export::ExportError;
 use zeroset_shader::layout::{
-    Frame, Light, LightSum, Material, Occluder, Sample, Shared, SurfaceSum, Tile,
+    self, Frame, Light, LightSum, Material, Occluder, Sample, Shared, SurfaceSum, Tile,
 };
 use zeroset_shader::{FieldForm, Shaders, export};
 
@@ -122,23 +126,55 @@ fn every_method_has_a_valid_shader() {
     assert_eq!(texts.len(), count, "two methods have the same shader");
 }
 
-#[test]
-fn every_pattern_has_a_valid_shader() {
+/// The patterns, with an image of this size.
+fn patterns([width, height]: [u32; 2]) -> Scene {
     let mut scene = scene(PATTERNS);
     scene
         .edit(|s| {
             s.materials[0].pattern = Pattern::Triplanar {
                 image: Arc::new(Image {
                     path: "one.png".into(),
-                    width: 1,
-                    height: 1,
-                    pixels: vec![glam::Vec3::ONE],
+                    width,
+                    height,
+                    pixels: vec![glam::Vec3::ONE; (width * height) as usize],
                 }),
                 size: 1.0,
                 sharpness: 4.0,
             }
         })
         .expect("a scene");
+    scene
+}
+
+/// A scene whose field is a grid of so many nodes along each axis.
+fn sampled(side: u32) -> Scene {
+    let values = (0..side.pow(3)).map(|i| (i % side) as f32 - 1.0).collect();
+    let grid = Grid::new([side; 3], values).expect("a grid");
+    let sampled = Sampled::new(Arc::new(grid), Aabb::centred([1.0; 3])).expect("a box");
+    let mut scene = scene("show(sphere(1))");
+    scene
+        .edit(|s| s.objects[0].field = Field::sampled(Arc::new(sampled)))
+        .expect("a scene");
+    scene
+}
+
+#[test]
+fn a_field_of_samples_has_a_valid_shader() {
+    for form in [FieldForm::Compiled, FieldForm::Interpreted] {
+        let text = check(&sampled(4), form, "samples");
+        assert!(text.contains("grid_sample("), "{form:?}");
+    }
+    // another grid is another texture, not another text
+    let mut shaders = Shaders::default();
+    let mut text = |side| shaders.prepare(&sampled(side)).expect("a job").source;
+    assert_eq!(text(4), text(9));
+    let sphere = check(&scene("show(sphere(1))"), FieldForm::Compiled, "sphere");
+    assert!(!sphere.contains("grid_sample"));
+}
+
+#[test]
+fn every_pattern_has_a_valid_shader() {
+    let scene = patterns([1, 1]);
     let text = check(&scene, FieldForm::Compiled, "patterns");
     for kind in [
         "checker",
@@ -214,18 +250,26 @@ fn layouts_are_the_shaders() {
     same_layout::<Sample>(&module);
     same_layout::<LightSum>(&module);
     same_layout::<SurfaceSum>(&module);
+    let job = Shaders::default().prepare(&sampled(2)).expect("a job");
+    let (module, _) = validate(&job.source, "samples");
+    same_layout::<layout::Grid>(&module);
 }
 
 #[test]
-fn entry_points_use_the_buffers_that_they_state() {
-    let scene = scene("show(sphere(1))");
+fn entry_points_use_the_buffers_and_textures_that_they_state() {
+    for scene in [scene("show(sphere(1))"), patterns([3, 2]), sampled(3)] {
+        uses_what_it_states(&scene);
+    }
+}
+
+fn uses_what_it_states(scene: &Scene) {
     for form in [FieldForm::Compiled, FieldForm::Interpreted] {
         let mut shaders = Shaders::new(form);
-        let job = shaders.prepare(&scene).expect("a job");
-        let (module, info) = validate(&job.source, "sphere");
+        let job = shaders.prepare(scene).expect("a job");
+        let (module, info) = validate(&job.source, scene.name());
         check_entries(&module, &info);
         let turned = shaders.in_turns(&job).expect("a job in turns");
-        let (module, info) = validate(&turned.source, "sphere in turns");
+        let (module, info) = validate(&turned.source, "in turns");
         check_entries(&module, &info);
     }
 }
@@ -243,6 +287,17 @@ fn check_entries(module: &naga::Module, info: &ModuleInfo) {
                 && !uses[handle].is_empty()
             {
                 let which = Binding::ALL[binding.binding as usize];
+                assert_eq!(which as u32, binding.binding);
+                let list = naga::TypeInner::Image {
+                    dim: naga::ImageDimension::D2,
+                    arrayed: true,
+                    class: naga::ImageClass::Sampled {
+                        kind: naga::ScalarKind::Float,
+                        multi: false,
+                    },
+                };
+                let inner = &module.types[variable.ty].inner;
+                assert_eq!(which.is_texture(), *inner == list, "{which:?}");
                 assert!(
                     entry.bindings.contains(&which),
                     "{} uses {which:?}",
@@ -253,7 +308,7 @@ fn check_entries(module: &naga::Module, info: &ModuleInfo) {
         let storage = entry
             .bindings
             .iter()
-            .filter(|b| !matches!(b, Binding::Numbers | Binding::Rows))
+            .filter(|b| !b.is_texture() && !matches!(b, Binding::Numbers | Binding::Rows))
             .count();
         assert!(storage <= 8, "{} has {storage} storage buffers", entry.name);
     }
@@ -320,6 +375,34 @@ fn large_scenes_are_exported_or_refused() {
             validate(&shaders.in_turns(&job).expect("a job").source, &text);
         }
     }
+}
+
+/// A file has no textures: the pixels of its images stand in it, as far as a compiler takes so many.
+#[test]
+fn images_are_exported_or_refused() {
+    let scene = patterns([80, 50]);
+    let text = export::wgsl(&scene).expect("4000 pixels");
+    validate(&text, "an image in a file");
+    assert!(text.contains("images: array<vec3f, 4000>") && !text.contains("textureLoad"));
+    assert!(export::glsl(&scene).is_ok());
+    let error = export::wgsl(&patterns([81, 50])).expect_err("4050 pixels");
+    assert!(
+        error.to_string().contains("4050 pixels of images"),
+        "{error}"
+    );
+}
+
+#[test]
+fn grids_are_exported_or_refused() {
+    let text = export::wgsl(&sampled(15)).expect("3375 samples");
+    validate(&text, "a grid in a file");
+    assert!(!text.contains("textureLoad"));
+    assert!(export::glsl(&sampled(15)).is_ok());
+    let error = export::wgsl(&sampled(16)).expect_err("4096 samples");
+    assert!(
+        error.to_string().contains("4096 samples of grids"),
+        "{error}"
+    );
 }
 
 #[test]

@@ -11,6 +11,19 @@ use naga::{
 /// A checked shader.
 pub struct Shader(Module);
 
+/// What a module reads beside its arguments, under the names that it must have.
+#[derive(Clone, Copy, Default)]
+pub struct Inputs<'a> {
+    /// `params: array<f32>`
+    pub params: &'a [f32],
+    /// `code: array<u32>`
+    pub code: &'a [u32],
+    /// `table: array<vec4f>`
+    pub table: &'a [[f32; 4]],
+    /// The texel of a texture of this name at a column, a row and a layer.
+    pub texel: Option<&'a dyn Fn(&str, [u32; 3]) -> [f32; 4]>,
+}
+
 /// What an expression is.
 #[derive(Clone, Debug)]
 pub enum Value {
@@ -111,6 +124,16 @@ impl Shader {
 
     /// Calls a function that reads `params` and `code`.
     pub fn run(&self, name: &str, arguments: Vec<Value>, params: &[f32], code: &[u32]) -> Vec<f32> {
+        let inputs = Inputs {
+            params,
+            code,
+            ..Inputs::default()
+        };
+        self.run_with(name, arguments, inputs)
+    }
+
+    /// Calls a function that reads anything of these.
+    pub fn run_with(&self, name: &str, arguments: Vec<Value>, inputs: Inputs<'_>) -> Vec<f32> {
         let mut functions = self.0.functions.iter();
         let Some((_, function)) = functions.find(|(_, f)| f.name.as_deref() == Some(name)) else {
             panic!("no function {name}");
@@ -118,8 +141,7 @@ impl Shader {
         let globals = self.0.global_variables.iter();
         let mut machine = Machine {
             module: &self.0,
-            params,
-            code,
+            inputs,
             globals: globals
                 .map(|(_, g)| match g.space {
                     naga::AddressSpace::Private => zero(&self.0, g.ty),
@@ -161,8 +183,7 @@ fn zero(module: &Module, ty: Handle<Type>) -> Value {
 
 struct Machine<'a> {
     module: &'a Module,
-    params: &'a [f32],
-    code: &'a [u32],
+    inputs: Inputs<'a>,
     globals: Vec<Value>,
 }
 
@@ -332,8 +353,16 @@ impl Frame<'_, '_, '_> {
             Variable::Global(global) => {
                 let name = self.machine.module.global_variables[global].name.as_deref();
                 match (name, path) {
-                    (Some("params"), [i]) => return Value::Float(self.machine.params[*i as usize]),
-                    (Some("code"), [i]) => return Value::Count(self.machine.code[*i as usize]),
+                    (Some("params"), [i]) => {
+                        return Value::Float(self.machine.inputs.params[*i as usize]);
+                    }
+                    (Some("code"), [i]) => {
+                        return Value::Count(self.machine.inputs.code[*i as usize]);
+                    }
+                    (Some("table"), [i, rest @ ..]) => {
+                        let row = Value::Vector(self.machine.inputs.table[*i as usize].to_vec());
+                        return rest.iter().fold(row, |v, index| v.part(*index));
+                    }
                     _ => &self.machine.globals[global.index()],
                 }
             }
@@ -349,6 +378,17 @@ impl Frame<'_, '_, '_> {
             }
         }
         value.clone()
+    }
+
+    fn texel(&self, texture: Handle<GlobalVariable>, place: &[Value], layer: u32) -> Value {
+        let texture = &self.machine.module.global_variables[texture];
+        let (name, texel) = (texture.name.as_deref(), self.machine.inputs.texel);
+        match (name, place, texel) {
+            (Some(name), [Value::Count(column), Value::Count(row)], Some(texel)) => {
+                Value::Vector(texel(name, [*column, *row, layer]).to_vec())
+            }
+            other => panic!("a texel of {:?} at {:?}", other.0, other.1),
+        }
     }
 
     fn compute(&mut self, e: Handle<Expression>) -> Value {
@@ -377,6 +417,9 @@ impl Frame<'_, '_, '_> {
                 let parts: Vec<Value> = components.iter().map(|c| self.value(*c)).collect();
                 let flat = || parts.iter().flat_map(Value::flat);
                 match &self.machine.module.types[*ty].inner {
+                    TypeInner::Vector { scalar, .. } if scalar.kind == ScalarKind::Uint => {
+                        Value::List(parts)
+                    }
                     TypeInner::Vector { .. } => Value::Vector(flat().collect()),
                     TypeInner::Matrix { rows, .. } => {
                         let numbers: Vec<f32> = flat().collect();
@@ -416,6 +459,21 @@ impl Frame<'_, '_, '_> {
                     .map(|a| self.float(*a))
                     .collect();
                 Value::Float(math(*fun, first, &rest))
+            }
+            Expression::ImageLoad {
+                image,
+                coordinate,
+                array_index: Some(layer),
+                ..
+            } => {
+                let (texture, place) = (self.value(*image), self.value(*coordinate));
+                let layer = self.count(*layer);
+                match (texture, place) {
+                    (Value::Pointer(Variable::Global(texture), _), Value::List(place)) => {
+                        self.texel(texture, &place, layer)
+                    }
+                    other => panic!("{other:?}"),
+                }
             }
             Expression::As {
                 expr,
@@ -461,6 +519,7 @@ fn binary(op: BinaryOperator, left: Value, right: Value) -> Value {
         (B::Add, Value::Count(a), Value::Count(b)) => Value::Count(a + b),
         (B::Subtract, Value::Count(a), Value::Count(b)) => Value::Count(a - b),
         (B::Multiply, Value::Count(a), Value::Count(b)) => Value::Count(a * b),
+        (B::Divide, Value::Count(a), Value::Count(b)) => Value::Count(a / b),
         (B::Modulo, Value::Count(a), Value::Count(b)) => Value::Count(a % b),
         (B::Less, Value::Count(a), Value::Count(b)) => Value::Bool(a < b),
         (B::And, Value::Count(a), Value::Count(b)) => Value::Count(a & b),

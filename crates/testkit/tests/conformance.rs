@@ -4,8 +4,9 @@
 //! The GPU's part runs on any adapter, software included, and says why it did not run where there is none.
 
 use std::path::Path;
-use zeroset::gpu::{GpuRenderer, testing};
+use zeroset::gpu::{GpuRenderer, Job, testing};
 use zeroset::language::load::{Language, Options, load, load_text};
+use zeroset::scene::accumulator::Accumulator;
 use zeroset::scene::film::{Film, Plane};
 use zeroset::scene::methods::{Choice, Kind, Param, Value};
 use zeroset::scene::render::{Renderer, Silent};
@@ -19,6 +20,10 @@ use zeroset_testkit::conform::{BUDGETS, Budget, Difference, compare, differing};
 use zeroset_testkit::plain::{self, Compiled, Quality};
 use zeroset_testkit::scenes;
 
+#[path = "conformance/grids.rs"]
+mod grids;
+#[path = "conformance/images.rs"]
+mod images;
 #[path = "conformance/large.rs"]
 mod large;
 
@@ -61,6 +66,15 @@ fn hello() -> Scene {
 
 fn on(renderer: &dyn Renderer, scene: &Scene) -> Film {
     renderer.render(scene, &Silent).expect("a picture").film
+}
+
+/// What a job that was tampered with shows of its scene.
+fn film_of(gpu: &GpuRenderer, scene: &Scene, job: &Job) -> Film {
+    let mut sums = Accumulator::new(SIZE, scene.settings().antialias, &Plane::ALL);
+    let samples = 0..sums.wanted();
+    gpu.sample(job, samples, &mut sums, &Silent)
+        .expect("a picture");
+    sums.into_film()
 }
 
 fn reference(scene: &Scene) -> Film {
@@ -430,15 +444,7 @@ fn planted_faults_are_noticed() {
         let mut job = gpu.job(scene).expect("a job");
         assert!(job.source.contains(from), "no `{from}` in the shader");
         job.source = job.source.replace(from, to).into();
-        let mut sums = zeroset::scene::accumulator::Accumulator::new(
-            SIZE,
-            scene.settings().antialias,
-            &Plane::ALL,
-        );
-        let samples = 0..sums.wanted();
-        gpu.sample(&job, samples, &mut sums, &Silent)
-            .expect("a picture");
-        sums.into_film()
+        film_of(gpu, scene, &job)
     };
     for (what, from, to, plane) in FAULTS {
         // light from everywhere shows by itself on the wall only

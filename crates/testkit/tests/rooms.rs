@@ -54,3 +54,23 @@ fn browsers_have_their_own_clock() {
     assert!(takes_clock("use std::time::{Duration, Instant};"));
     assert!(!takes_clock("use std::time::Duration;"));
 }
+
+/// Whether a line waits for a GPU.
+fn waits(line: &str) -> bool {
+    let line = line.trim();
+    !line.starts_with("//")
+        && ["pollster::", "PollType::Wait", ".recv("]
+            .iter()
+            .any(|w| line.contains(w))
+}
+
+#[test]
+fn one_room_waits_for_the_gpu() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../gpu/src");
+    let mut found = Vec::new();
+    sources(&folder, &mut found);
+    for (path, text) in found {
+        let does = text.lines().any(waits);
+        assert_eq!(does, path.ends_with("gpu/src/blocking.rs"), "{path}");
+    }
+}

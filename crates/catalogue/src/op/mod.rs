@@ -1,7 +1,7 @@
 //! Operations: what an [`Instruction`](crate::tape::Instruction) does.
 //!
 //! There are four kinds, told apart by what they take and give. The catalogue's entries are operations, and so are a few
-//! that only the compiler emits: placements, the arithmetic of free-form formulas, the walls of repetitions. Every
+//! that only the compiler emits: placements, the arithmetic of free-form formulas, grids of samples, the walls of repetitions. Every
 //! evaluator is generated from the lists `each_leaf!`, `each_warp!`, `each_change!` and `each_pair!`, in which the
 //! catalogue comes first.
 
@@ -11,6 +11,7 @@ use zeroset_number::{Args, Real, Vec3};
 
 pub mod arithmetic;
 pub mod domain;
+pub mod grid;
 
 /// A point in, a value out.
 pub trait Leaf: 'static {
@@ -98,6 +99,7 @@ macro_rules! with_own_leaves {
             $crate::op::arithmetic::Coordinate<1>,
             $crate::op::arithmetic::Coordinate<2>,
             $crate::op::arithmetic::Constant,
+            $crate::op::grid::Sampled,
         }
     };
 }
@@ -196,6 +198,8 @@ pub mod code {
     pub const COORDINATE: u16 = PRIMITIVES;
     /// A number.
     pub const CONSTANT: u16 = PRIMITIVES + 3;
+    /// See [`grid::Sampled`](super::grid::Sampled).
+    pub const SAMPLED: u16 = PRIMITIVES + 4;
     /// See [`domain::Offset`](super::domain::Offset).
     pub const OFFSET: u16 = MAPS;
     /// See [`domain::Rigid`](super::domain::Rigid).

@@ -43,6 +43,7 @@ fn text(shape: impl Into<Shape>) -> String {
             Node::Repeat { repetition, .. } => format!("{repetition:?}"),
             Node::Polar { polar, .. } => format!("{polar:?}"),
             Node::Formula(_) => "formula".into(),
+            Node::Sampled(_) => "sampled".into(),
             Node::Paint { paint, .. } => format!("{paint:?}"),
         };
         format!("{own}({})", children.join(", "))

@@ -34,6 +34,8 @@ fn toy(size: [u32; 2], samples: u32, work: f32) -> Job {
         params: vec![work].into(),
         code: vec![7].into(),
         table: vec![[0.7; 4]].into(),
+        images: Vec::new().into(),
+        grids: Vec::new().into(),
         registers: 0,
         in_turns: false,
         turns: zeroset_shader::Turns::default(),

@@ -31,10 +31,13 @@ impl ExpandError {
 /// The scene as JSON: everything that it is, every number exact.
 ///
 /// # Errors
-/// A number that is not finite, which JSON has no word for.
+/// A number that is not finite or a field of samples, which JSON has no word for.
 pub fn expand(scene: &Scene) -> Result<Value, ExpandError> {
     let mut writer = Writer::default();
     (scene.objects().iter()).for_each(|object| writer.count(&object.field));
+    if writer.has_samples {
+        return Err(ExpandError::new("a field of samples has no word there"));
+    }
     let objects: Vec<Value> = (scene.objects().iter())
         .map(|object| {
             let mut out = Map::new();
@@ -132,6 +135,8 @@ struct Writer {
     /// Parts written already, by node.
     places: HashMap<usize, usize>,
     parts: Vec<Value>,
+    /// Whether any node is a grid of samples.
+    has_samples: bool,
 }
 
 impl Writer {
@@ -140,6 +145,7 @@ impl Writer {
         let uses = self.uses.entry(field.key()).or_default();
         *uses += 1;
         if *uses == 1 {
+            self.has_samples |= matches!(field.node(), Node::Sampled(_));
             field.children().iter().for_each(|c| self.count(c));
         }
     }
@@ -217,6 +223,8 @@ impl Writer {
                 ("paint", body)
             }
             Node::Formula(formula) => ("formula", super::formula::write(formula)),
+            // refused before: see `expand`
+            Node::Sampled(_) => return Value::Null,
         };
         json!({ name: body })
     }

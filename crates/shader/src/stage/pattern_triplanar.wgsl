@@ -3,8 +3,8 @@
 fn texel(m: Material, x: f32, y: f32) -> vec3f {
     let column = x - m.width * floor(x / m.width);
     let row = y - m.height * floor(y / m.height);
-    let at = min(row, m.height - 1.0) * m.width + min(column, m.width - 1.0);
-    return table[u32(m.image) + u32(at)].xyz;
+    let pixel = u32(min(row, m.height - 1.0)) * u32(m.width) + u32(min(column, m.width - 1.0));
+    return image_texel(u32(m.image_row) * TEXTURE_SIDE + u32(m.image_column) + pixel);
 }
 
 /// The colour of an endlessly repeated image, between its four nearest pixels.

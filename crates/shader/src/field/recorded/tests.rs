@@ -1,11 +1,16 @@
 //! Every function of every operation is WGSL, and computes what the evaluators compute.
 
 use super::*;
+use crate::entry::Binding;
+use crate::layout::{Frame, Shared};
+use crate::texture::{self, SIDE, starts};
 use std::collections::HashSet;
+use std::sync::Arc;
 use zeroset_catalogue::entries::catalogue;
+use zeroset_catalogue::op::code;
 use zeroset_catalogue::tape::{Code, Instruction, Tape};
-use zeroset_number::{Data, Vec3, v3, wgsl};
-use zeroset_testkit::wgsl::{Shader, Value};
+use zeroset_number::{Data, Grid, Vec3, v3, wgsl};
+use zeroset_testkit::wgsl::{Inputs, Shader, Value};
 
 /// All functions, with their names.
 fn functions() -> impl Iterator<Item = (Operation, Form, Function)> {
@@ -71,6 +76,7 @@ fn what_is_not_there_has_no_function() {
 fn parameters(operation: Operation) -> Vec<Vec<f32>> {
     let all = catalogue();
     let (centre, info, samples) = match operation {
+        Operation::Leaf(code::SAMPLED) => return sampled_parameters(),
         Operation::Leaf(code) => match all.primitives.get(usize::from(code)) {
             Some(e) => (vec![0.25, -0.125, 0.0625], &e.info, e.samples),
             None => return own_parameters(),
@@ -106,6 +112,29 @@ fn parameters(operation: Operation) -> Vec<Vec<f32>> {
 fn own_parameters() -> Vec<Vec<f32>> {
     let mut noise = Noise(7);
     vec![(0..32).map(|_| 0.2 + noise.next().abs()).collect()]
+}
+
+/// Grids that a field of samples may be of: the texels of the second begin within a row and go on in the next one.
+fn grids() -> Vec<Arc<Grid>> {
+    let mut noise = Noise(5);
+    [[9, 7, 5], [16, 13, 12], [2, 3, 4]]
+        .map(|nodes: [u32; 3]| {
+            let values = (0..nodes.iter().product()).map(|_| noise.next()).collect();
+            Arc::new(Grid::new(nodes, values).expect("a grid"))
+        })
+        .to_vec()
+}
+
+/// Places and numbers of [`grids`], whose boxes the points of a case lie in and about.
+fn sampled_parameters() -> Vec<Vec<f32>> {
+    let each = grids().into_iter().enumerate().map(|(number, grid)| {
+        let nodes = grid.nodes().map(|n| n as f32);
+        let density = nodes.map(|n| (n - 1.0) / 2.5);
+        let place = [-1.25, -1.25, -1.25].into_iter().chain(density);
+        let place = [9.0; AT].into_iter().chain(place);
+        place.chain([number as f32]).chain(nodes).collect()
+    });
+    each.collect()
 }
 
 /// Where the parameters of the operations under test begin.
@@ -151,7 +180,10 @@ fn evaluate(operation: Operation, params: &[f32], p: Vec3<Dual<f32>>) -> Vec<Dua
                 registers: 6,
                 result: 3 + k,
             };
-            let data = &Data::from(params);
+            let data = &Data {
+                params: params.to_vec(),
+                grids: grids(),
+            };
             zeroset_eval::Point::new(Tape { code: &code, data }).value(p)
         })
         .collect()
@@ -233,9 +265,25 @@ fn differences(
 ) -> (usize, String) {
     let mut noise = Noise(1);
     let (mut count, mut example) = (0, String::new());
+    let grids = grids();
+    let samples: Vec<f32> = grids.iter().flat_map(|g| g.values()).copied().collect();
+    let rows = grids.iter().zip(starts(&grids));
+    let table: Vec<[f32; 4]> = rows
+        .map(|(grid, start)| bytemuck::cast(crate::job::grid_row(grid, start)))
+        .collect();
+    let texel = |name: &str, [column, row, layer]: [u32; 3]| {
+        assert_eq!((name, layer), ("grids", 0));
+        [samples[(row * SIDE + column) as usize], 0.0, 0.0, 1.0]
+    };
+    let inputs = Inputs {
+        params,
+        table: &table,
+        texel: Some(&texel),
+        ..Inputs::default()
+    };
     for _ in 0..POINTS {
         let (arguments, expected) = case(operation, form, params, &mut noise);
-        let got = shader.call_with(function, arguments, params);
+        let got = shader.run_with(function, arguments, inputs);
         assert_eq!(got.len(), expected.len(), "{function}");
         let size = expected.iter().fold(1.0_f32, |m, x| m.max(x.abs()));
         let near = |(x, y): (&f32, &f32)| (x - y).abs() <= 1e-4 * size;
@@ -252,7 +300,15 @@ const POINTS: usize = 100;
 
 fn shader() -> (Vec<(Operation, Form, Function)>, Shader) {
     let all: Vec<_> = functions().collect();
-    let source: String = all.iter().map(|(_, _, f)| wgsl::print(f)).collect();
+    let mut source: String = all.iter().map(|(_, _, f)| wgsl::print(f)).collect();
+    for binding in [Binding::Table, Binding::Grids] {
+        source += &binding.declaration(false);
+    }
+    source += &Frame::declaration();
+    source += "var<private> frame: Frame;\n";
+    source += &texture::side();
+    source += texture::GRID_TEXEL;
+    source += &crate::source::grids();
     let shader = Shader::new(&source);
     (all, shader)
 }
