@@ -178,7 +178,7 @@ impl Gpu {
         }
     }
 
-    /// Runs commands, and says what the driver says about them. `bytes` is what they allocate, for the message.
+    /// Runs commands, and says what the driver says about them. They allocate `bytes`, for the message.
     pub(crate) async fn watched<T>(
         &self,
         bytes: u64,
@@ -199,7 +199,7 @@ impl Gpu {
         }
         match first {
             None => self.check().map(|()| made),
-            Some(wgpu::Error::OutOfMemory { .. }) => Err(self.out_of_memory(bytes)),
+            Some(wgpu::Error::OutOfMemory { .. }) => Err(self.out_of_memory("its commands", bytes)),
             Some(error) => {
                 self.check()?;
                 Err(GpuError::Refused {
@@ -210,26 +210,27 @@ impl Gpu {
         }
     }
 
-    fn out_of_memory(&self, bytes: u64) -> GpuError {
+    fn out_of_memory(&self, what: &str, bytes: u64) -> GpuError {
         GpuError::OutOfMemory {
             adapter: self.info.title(),
+            what: what.to_owned(),
             bytes,
         }
     }
 
-    /// A buffer of zeros.
+    /// A buffer of zeros. `what` it is for, for the message.
     pub(crate) async fn buffer(
         &self,
-        label: &'static str,
+        what: &'static str,
         bytes: u64,
         usage: BufferUsages,
     ) -> Result<wgpu::Buffer, GpuError> {
         if self.faults.fails_allocation(bytes) || bytes > self.limits.max_buffer_size {
-            return Err(self.out_of_memory(bytes));
+            return Err(self.out_of_memory(what, bytes));
         }
         self.watched(bytes, || {
             self.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
+                label: Some(what),
                 // no buffer may be empty where a shader sees it
                 size: bytes.max(16).next_multiple_of(16),
                 usage,
@@ -237,12 +238,13 @@ impl Gpu {
             })
         })
         .await
+        .map_err(|error| error.with_purpose(what))
     }
 
-    /// A texture that shaders read by places.
+    /// A texture that shaders read by places. `what` it is for, for the message.
     pub(crate) async fn texture(
         &self,
-        label: &'static str,
+        what: &str,
         size: Extent3d,
         format: TextureFormat,
     ) -> Result<wgpu::Texture, GpuError> {
@@ -250,11 +252,11 @@ impl Gpu {
         let texel = format.block_copy_size(None).unwrap_or(0);
         let bytes = texels.into_iter().product::<u64>() * u64::from(texel);
         if self.faults.fails_allocation(bytes) {
-            return Err(self.out_of_memory(bytes));
+            return Err(self.out_of_memory(what, bytes));
         }
         self.watched(bytes, || {
             self.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
+                label: None,
                 size,
                 mip_level_count: 1,
                 sample_count: 1,
@@ -265,6 +267,7 @@ impl Gpu {
             })
         })
         .await
+        .map_err(|error| error.with_purpose(what))
     }
 
     /// Gives the GPU something to do.

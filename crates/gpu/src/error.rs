@@ -86,10 +86,12 @@ pub enum GpuError {
         largest: String,
     },
     /// There is not enough memory, even for a small part of the picture at a time.
-    #[error("out of memory on {adapter}: {bytes} bytes cannot be had")]
+    #[error("out of memory on {adapter}: {bytes} bytes cannot be had for {what}")]
     OutOfMemory {
         /// The adapter.
         adapter: String,
+        /// What the allocation was for.
+        what: String,
         /// The allocation that failed.
         bytes: u64,
     },
@@ -124,6 +126,18 @@ pub enum GpuError {
 }
 
 impl GpuError {
+    /// The same, with what an allocation that failed was for.
+    pub(crate) fn with_purpose(self, what: &str) -> GpuError {
+        match self {
+            GpuError::OutOfMemory { adapter, bytes, .. } => GpuError::OutOfMemory {
+                adapter,
+                what: what.to_owned(),
+                bytes,
+            },
+            other => other,
+        }
+    }
+
     /// What can be done about it, if anything.
     pub fn advice(&self) -> Option<&'static str> {
         match self {

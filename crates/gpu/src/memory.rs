@@ -85,7 +85,7 @@ impl Memory {
                 // the old buffer goes first: both may not fit
                 (*slot, self.groups) = (None, None);
                 self.held.forget(binding);
-                *slot = Some(gpu.buffer("picture", bytes, usage).await?);
+                *slot = Some(gpu.buffer("a picture", bytes, usage).await?);
             }
         }
         if !self.images.has_room(&job.images) {
@@ -99,7 +99,7 @@ impl Memory {
         if self.is_mapped || self.read.as_ref().is_none_or(|b| b.size() < sizes.read) {
             (self.read, self.is_mapped) = (None, false);
             let usage = BufferUsages::MAP_READ | BufferUsages::COPY_DST;
-            self.read = Some(gpu.buffer("readback", sizes.read, usage).await?);
+            self.read = Some(gpu.buffer("reading a picture", sizes.read, usage).await?);
         }
         if self.groups.is_none() {
             let bind = || self.bind(gpu, layouts, tiles);

@@ -87,7 +87,7 @@ impl<T: Listed> Layers<T> {
             height: rows.min(u64::from(SIDE)) as u32,
             depth_or_array_layers: layers as u32,
         };
-        let texture = gpu.texture(T::UNIT, size, T::FORMAT).await?;
+        let texture = gpu.texture(&purpose(all), size, T::FORMAT).await?;
         let view = texture.create_view(&TextureViewDescriptor {
             dimension: Some(TextureViewDimension::D2Array),
             ..TextureViewDescriptor::default()
@@ -129,18 +129,31 @@ fn rows<T: Texels>(all: &[Arc<T>]) -> u64 {
     texels.div_ceil(u64::from(SIDE)).max(1)
 }
 
+/// The name of what takes most of a list.
+fn largest<T: Listed>(all: &[Arc<T>]) -> Option<String> {
+    let largest = all.iter().max_by_key(|one| one.count())?;
+    Some(largest.name())
+}
+
+/// What a texture is for, for messages.
+fn purpose<T: Listed>(all: &[Arc<T>]) -> String {
+    match largest(all) {
+        Some(largest) => format!("{}, the largest of which is {largest}", T::UNIT),
+        None => T::UNIT.to_owned(),
+    }
+}
+
 /// Rows that a list takes on a device of so many layers.
 fn allowed<T: Listed>(all: &[Arc<T>], adapter: &str, layers: u32) -> Result<u64, GpuError> {
     let (side, count) = (u64::from(SIDE), starts(all).last().unwrap_or(0));
     let limit = side * side * u64::from(layers);
     if count > limit {
-        let largest = all.iter().max_by_key(|one| one.count());
         return Err(GpuError::Texels {
             unit: T::UNIT,
             count,
             adapter: adapter.to_owned(),
             limit,
-            largest: largest.map_or_else(String::new, |one| one.name()),
+            largest: largest(all).unwrap_or_default(),
         });
     }
     Ok(rows(all))

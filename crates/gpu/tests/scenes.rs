@@ -4,7 +4,8 @@ use glam::Vec3;
 use std::fmt::Write;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use zeroset_gpu::{FieldForm, GpuError, testing};
+use zeroset_gpu::testing::{self, Faults};
+use zeroset_gpu::{FieldForm, GpuError};
 use zeroset_language::load::{Language, Options, load_text};
 use zeroset_scene::accumulator::Accumulator;
 use zeroset_scene::camera::Camera;
@@ -147,6 +148,26 @@ fn an_image_is_sent_to_the_gpu_once() {
     let (colour, bytes) = picture(&shown(&[&red, &other], 0.2), &camera);
     assert_eq!(colour, Vec3::Y);
     assert!(bytes < few, "{bytes}");
+}
+
+#[test]
+fn an_image_that_fits_into_no_memory_is_an_error_that_names_it() {
+    let test = "an_image_that_fits_into_no_memory_is_an_error_that_names_it";
+    let Some(renderer) = testing::with_faults(test, Faults::default().with_memory(8 << 20)) else {
+        return;
+    };
+    let [(small, _), (large, _)] = [40, 1200].map(|side| image(side, Vec3::X));
+    for (images, fits) in [([&small, &small], true), ([&small, &large], false)] {
+        let rendered = renderer.render(&shown(&images, 0.1), &Silent);
+        match rendered.map_err(|e| e.to_string()) {
+            Ok(_) => assert!(fits),
+            Err(error) => {
+                let named = "\"one.png\", an image of 1200x1200 pixels";
+                assert!(!fits && error.contains(named), "{error}");
+                assert!(error.contains("out of memory"), "{error}");
+            }
+        }
+    }
 }
 
 /// Chains that need a register a link: drivers compile arrays of them slowly, or not at all.

@@ -11,6 +11,9 @@ use naga::{
 /// A checked shader.
 pub struct Shader(Module);
 
+/// The texel of a texture of this name at a column, a row and a layer.
+pub type Texel<'a> = dyn Fn(&str, [u32; 3]) -> [f32; 4] + 'a;
+
 /// What a module reads beside its arguments, under the names that it must have.
 #[derive(Clone, Copy, Default)]
 pub struct Inputs<'a> {
@@ -20,8 +23,8 @@ pub struct Inputs<'a> {
     pub code: &'a [u32],
     /// `table: array<vec4f>`
     pub table: &'a [[f32; 4]],
-    /// The texel of a texture of this name at a column, a row and a layer.
-    pub texel: Option<&'a dyn Fn(&str, [u32; 3]) -> [f32; 4]>,
+    /// What textures hold.
+    pub texel: Option<&'a Texel<'a>>,
 }
 
 /// What an expression is.
