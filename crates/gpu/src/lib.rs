@@ -25,7 +25,7 @@
 //! | `band`, `memory` | what fits into the device's memory, and the buffers |
 //! | `texture` | what is too long for buffers: images, grids |
 //! | `pace` | how large a tile is, from what earlier ones took |
-//! | `flight` | submissions on their way, and the GPU's clock |
+//! | `render_queue` | submissions on their way, and the GPU's clock |
 //! | `picture` | one picture: bands, stages, tiles |
 //! | `renderer` | the renderer, and what is done when the device fails |
 //! | `host` | what is left to whoever runs all that: to wait, to compile beside other work |
@@ -39,12 +39,12 @@ mod blocking;
 mod device;
 mod error;
 mod fault;
-mod flight;
 mod host;
 mod memory;
 mod pace;
 mod picture;
 mod pipeline;
+mod render_queue;
 mod renderer;
 #[doc(hidden)]
 pub mod testing;

@@ -17,7 +17,7 @@ use zeroset_shader::layout::{Frame, Tile};
 /// All buffers of a device that pictures are rendered with.
 #[derive(Default)]
 pub(crate) struct Memory {
-    /// By binding. Tiles belong to the flight.
+    /// By binding. Tiles belong to the render queue.
     buffers: [Option<Buffer>; Binding::ALL.len()],
     read: Option<Buffer>,
     /// Whether `read` is mapped, or will be: a picture that was cancelled leaves it so.

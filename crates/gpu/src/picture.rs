@@ -3,10 +3,10 @@
 use crate::band::{COUNTER_BYTES, LEAST_BUDGET, Room, Sizes};
 use crate::device::Gpu;
 use crate::error::GpuError;
-use crate::flight::{Dispatch, Equipment, Flight, Watcher};
 use crate::memory::{Counters, Memory, counters, unpack};
 use crate::pace::{Area, Costs, Cutter, LIMIT};
 use crate::pipeline::{Layouts, Pipelines, STAGES, Set};
+use crate::render_queue::{Dispatch, DispatchObserver, DispatchSetup, RenderQueue};
 use crate::timing::{Stage, Timings};
 use std::ops::Range;
 use std::sync::Arc;
@@ -83,11 +83,11 @@ impl<'a> Progress<'a> {
 }
 
 /// What a picture is rendered with, all of one device.
-pub(crate) struct Bench<'a> {
+pub(crate) struct PictureResources<'a> {
     pub(crate) gpu: &'a Arc<Gpu>,
     pub(crate) layouts: &'a Layouts,
     pub(crate) memory: &'a mut Memory,
-    pub(crate) flight: &'a mut Flight,
+    pub(crate) render_queue: &'a mut RenderQueue,
     pub(crate) set: &'a mut Set,
     /// Bytes of all buffers of a band together.
     pub(crate) budget: u64,
@@ -95,14 +95,14 @@ pub(crate) struct Bench<'a> {
 
 /// How far a picture is: what is done stays done where it must be begun anew.
 #[derive(Debug, Default)]
-pub(crate) struct Course {
+pub(crate) struct RowsDone {
     /// Rows whose sums the accumulator has.
     rows: u32,
     /// Sums of the counters of these rows.
     counted: [u64; 8],
 }
 
-impl Course {
+impl RowsDone {
     pub(crate) fn statistics(&self) -> Statistics {
         let [
             prepass,
@@ -131,22 +131,22 @@ impl Course {
     }
 }
 
-impl Bench<'_> {
+impl PictureResources<'_> {
     /// Adds samples to the sums of a picture of the job's size, from the row on that it has reached.
     pub(crate) async fn render(
         &mut self,
         job: &Job,
         samples: &Range<u32>,
         into: &mut Accumulator,
-        course: &mut Course,
+        rows_done: &mut RowsDone,
         progress: &mut Progress<'_>,
         timings: &mut Timings,
     ) -> Result<(), GpuError> {
         let sums: Vec<Sum> = into.kept().collect();
         timings.by_timestamps = self.gpu.tick.is_some();
         let height = job.frame.size[1];
-        while course.rows < height {
-            let first = course.rows;
+        while rows_done.rows < height {
+            let first = rows_done.rows;
             let room = Room {
                 budget: self.budget.max(LEAST_BUDGET),
                 binding: self.gpu.largest_binding(),
@@ -159,12 +159,12 @@ impl Bench<'_> {
                 .await?;
             into.add_rows(first, rows, &numbers);
             let (pairs, _) = counters.as_chunks::<2>();
-            for (sum, [low, high]) in course.counted.iter_mut().zip(pairs) {
+            for (sum, [low, high]) in rows_done.counted.iter_mut().zip(pairs) {
                 *sum += u64::from(*low) | u64::from(*high) << 32;
             }
-            course.rows += rows;
+            rows_done.rows += rows;
             timings.bands += 1;
-            progress.reach(f64::from(course.rows) / f64::from(height));
+            progress.reach(f64::from(rows_done.rows) / f64::from(height));
         }
         Ok(())
     }
@@ -213,7 +213,7 @@ impl Bench<'_> {
         let notes = self.notes(job);
         let sizes = Sizes::new(&frame, sums, notes);
         progress.check()?;
-        let (gpu, tiles) = (self.gpu, &self.flight.tiles);
+        let (gpu, tiles) = (self.gpu, &self.render_queue.tiles);
         timings.uploaded += (self.memory)
             .fill(gpu, self.layouts, tiles, job, &frame, &sizes)
             .await?;
@@ -227,7 +227,7 @@ impl Bench<'_> {
             return Err(self.without("buffers"));
         };
         let mut run = Run {
-            flight: self.flight,
+            render_queue: self.render_queue,
             pipelines: &self.set.pipelines,
             groups,
             gpu: self.gpu,
@@ -235,7 +235,7 @@ impl Bench<'_> {
             read,
             words: notes / 4,
             registers: u64::from(job.registers),
-            notes: Notes {
+            notes: BandRecord {
                 share: f64::from(rows[1]) / f64::from(frame.band[1].max(1)),
                 size: frame.size,
                 costs: &mut self.set.costs,
@@ -253,7 +253,7 @@ impl Bench<'_> {
             run.warm_up(given).await?;
             self.set.is_warm = true;
         }
-        run.flight.encoder().clear_buffer(counters, 0, None);
+        run.render_queue.encoder().clear_buffer(counters, 0, None);
         if job.prepass() {
             let [wide, narrow] = CONE_SIDES;
             run.cones(Stage::ConesWide, &frame, stored, wide).await?;
@@ -295,20 +295,22 @@ impl Bench<'_> {
         ) else {
             return Err(self.without("buffers"));
         };
-        let encoder = self.flight.encoder();
+        let encoder = self.render_queue.encoder();
         if sizes.planes > 0 {
             encoder.copy_buffer_to_buffer(made, 0, read, 0, sizes.planes);
         }
         encoder.copy_buffer_to_buffer(counters, 0, read, sizes.planes, COUNTER_BYTES);
         let share = f64::from(frame.band[3]) / f64::from(frame.band[1].max(1));
-        let mut notes = Notes {
+        let mut notes = BandRecord {
             share,
             size: frame.size,
             costs: &mut self.set.costs,
             progress,
             timings,
         };
-        self.flight.finish_and_map(read, .., &mut notes).await?;
+        self.render_queue
+            .finish_and_map(read, .., &mut notes)
+            .await?;
         let mapped = read.get_mapped_range(..sizes.read);
         let found = match &mapped {
             Ok(view) => unpack(view, sizes.planes),
@@ -343,7 +345,7 @@ fn check(gpu: &Gpu, counters: &Counters) -> Result<(), GpuError> {
 }
 
 /// Takes in what dispatches of a band took.
-struct Notes<'a, 'o> {
+struct BandRecord<'a, 'o> {
     /// Share of the rays that is not traced by another band too.
     share: f64,
     /// The picture's size.
@@ -353,7 +355,7 @@ struct Notes<'a, 'o> {
     timings: &'a mut Timings,
 }
 
-impl Watcher for Notes<'_, '_> {
+impl DispatchObserver for BandRecord<'_, '_> {
     fn take(&mut self, dispatch: Dispatch) {
         let stage = dispatch.stage as usize;
         let Dispatch {
@@ -382,7 +384,7 @@ impl Watcher for Notes<'_, '_> {
 }
 
 /// Only whether to go on waiting: what dispatches took says nothing where a driver compiles, or where nobody needs them.
-impl Watcher for Progress<'_> {
+impl DispatchObserver for Progress<'_> {
     fn take(&mut self, _: Dispatch) {}
 
     fn stops(&self) -> bool {
@@ -392,7 +394,7 @@ impl Watcher for Progress<'_> {
 
 /// The stages of one band.
 struct Run<'a, 'o> {
-    flight: &'a mut Flight,
+    render_queue: &'a mut RenderQueue,
     pipelines: &'a Pipelines,
     groups: &'a [wgpu::BindGroup; STAGES],
     gpu: &'a Gpu,
@@ -402,7 +404,7 @@ struct Run<'a, 'o> {
     words: u64,
     /// Words of each for registers.
     registers: u64,
-    notes: Notes<'a, 'o>,
+    notes: BandRecord<'a, 'o>,
 }
 
 impl Run<'_, '_> {
@@ -421,19 +423,19 @@ impl Run<'_, '_> {
             Stage::Gather,
             Stage::Develop,
         ];
-        self.flight.compiles = true;
+        self.render_queue.compiles = true;
         let mut run = Ok(());
         for stage in stages {
             let dispatch = self.dispatch(stage, area, Some(0.0));
             run = self.record(dispatch, [1, 1], 0).await;
             if run.is_ok() {
-                run = self.flight.finish(self.notes.progress).await;
+                run = self.render_queue.finish(self.notes.progress).await;
             }
             if run.is_err() {
                 break;
             }
         }
-        self.flight.compiles = false;
+        self.render_queue.compiles = false;
         self.notes.timings.compile += began.elapsed().as_secs_f64();
         run
     }
@@ -489,7 +491,7 @@ impl Run<'_, '_> {
                 for turn in 1..=TURNS {
                     if turn == TURNS {
                         let waits = 4 * WAITING as u64;
-                        (self.flight.encoder()).clear_buffer(self.counters, waits, Some(4));
+                        (self.render_queue.encoder()).clear_buffer(self.counters, waits, Some(4));
                     }
                     self.add(dispatch, tile.area.groups(), index).await?;
                     dispatch.turn += 1;
@@ -504,9 +506,9 @@ impl Run<'_, '_> {
 
     /// The counters after all that is recorded.
     async fn counted(&mut self) -> Result<Counters, GpuError> {
-        let encoder = self.flight.encoder();
+        let encoder = self.render_queue.encoder();
         encoder.copy_buffer_to_buffer(self.counters, 0, self.read, 0, COUNTER_BYTES);
-        (self.flight)
+        (self.render_queue)
             .finish_and_map(self.read, ..COUNTER_BYTES, &mut self.notes)
             .await?;
         let counted = match self.read.get_mapped_range(..COUNTER_BYTES) {
@@ -536,9 +538,9 @@ impl Run<'_, '_> {
         groups: [u32; 2],
         index: u32,
     ) -> Result<(), GpuError> {
-        if self.flight.is_full(dispatch.predicted) {
+        if self.render_queue.is_full(dispatch.predicted) {
             self.notes.progress.check()?;
-            self.flight.flush(&mut self.notes).await?;
+            self.render_queue.flush(&mut self.notes).await?;
         }
         self.record(dispatch, groups, index).await
     }
@@ -549,15 +551,17 @@ impl Run<'_, '_> {
         groups: [u32; 2],
         index: u32,
     ) -> Result<(), GpuError> {
-        let with = Equipment {
+        let with = DispatchSetup {
             pipelines: self.pipelines,
             groups: self.groups,
         };
-        (self.flight).dispatch(&with, dispatch, groups, index).await
+        (self.render_queue)
+            .dispatch(&with, dispatch, groups, index)
+            .await
     }
 
     async fn finish(&mut self) -> Result<(), GpuError> {
         self.notes.progress.check()?;
-        self.flight.finish(&mut self.notes).await
+        self.render_queue.finish(&mut self.notes).await
     }
 }

@@ -5,11 +5,11 @@ use crate::band::{BUDGET, LEAST_BUDGET};
 use crate::device::Gpu;
 use crate::error::GpuError;
 use crate::fault::Faults;
-use crate::flight::Flight;
 use crate::host::Host;
 use crate::memory::Memory;
-use crate::picture::{Bench, Course, Progress};
+use crate::picture::{PictureResources, Progress, RowsDone};
 use crate::pipeline::{Cache, Layouts};
+use crate::render_queue::RenderQueue;
 use crate::timing::Timings;
 use std::ops::Range;
 use std::sync::Arc;
@@ -48,14 +48,14 @@ struct Opened {
     layouts: Arc<Layouts>,
     cache: Cache,
     memory: Memory,
-    flight: Flight,
+    render_queue: RenderQueue,
 }
 
 impl Opened {
     async fn new(gpu: Arc<Gpu>) -> Result<Opened, GpuError> {
         Ok(Opened {
             layouts: Arc::new(Layouts::new(&gpu).await?),
-            flight: Flight::new(&gpu).await?,
+            render_queue: RenderQueue::new(&gpu).await?,
             cache: Cache::default(),
             memory: Memory::default(),
             cut_short: Vec::new(),
@@ -122,18 +122,18 @@ impl Core {
         let (size, count) = (job.frame.size, samples.len() as u32);
         let mut timings = Timings::new(self.adapter.clone(), size, count);
         let mut progress = Progress::new(observer, size, count);
-        let mut course = Course::default();
+        let mut rows_done = RowsDone::default();
         let mut was_lost = false;
         loop {
-            let mut errand = Errand {
+            let mut request = SampleRequest {
                 job,
                 samples: &samples,
                 into,
-                course: &mut course,
+                rows_done: &mut rows_done,
                 progress: &mut progress,
                 timings: &mut timings,
             };
-            let failure = match self.attempt(&mut errand).await {
+            let failure = match self.attempt(&mut request).await {
                 Ok(()) => break,
                 Err(failure) => failure,
             };
@@ -177,19 +177,19 @@ impl Core {
         self.timings = Some(timings);
         Ok(Statistics {
             seconds,
-            ..course.statistics()
+            ..rows_done.statistics()
         })
     }
 
-    async fn attempt(&mut self, errand: &mut Errand<'_, '_>) -> Result<(), GpuError> {
-        let Errand {
+    async fn attempt(&mut self, request: &mut SampleRequest<'_, '_>) -> Result<(), GpuError> {
+        let SampleRequest {
             job,
             samples,
             into,
-            course,
+            rows_done,
             progress,
             timings,
-        } = errand;
+        } = request;
         let job: &Job = job;
         let opened = match &mut self.opened {
             Some(opened) => opened,
@@ -198,7 +198,7 @@ impl Core {
                 none.insert(Opened::new(Arc::new(gpu)).await?)
             }
         };
-        opened.flight.drain(&mut **progress).await?;
+        opened.render_queue.drain(&mut **progress).await?;
         let turned = if opened.needs_turns(job) {
             self.shaders.in_turns(job)
         } else {
@@ -213,29 +213,29 @@ impl Core {
         if !set.is_warm {
             timings.compile += began.elapsed().as_secs_f64();
         }
-        let before = opened.flight.submissions;
-        let mut bench = Bench {
+        let before = opened.render_queue.submissions;
+        let mut resources = PictureResources {
             gpu: &opened.gpu,
             layouts: &opened.layouts,
             memory: &mut opened.memory,
-            flight: &mut opened.flight,
+            render_queue: &mut opened.render_queue,
             set,
             budget: self.budget,
         };
-        bench
-            .render(job, samples, into, course, progress, timings)
+        resources
+            .render(job, samples, into, rows_done, progress, timings)
             .await?;
-        timings.submissions += opened.flight.submissions - before;
+        timings.submissions += opened.render_queue.submissions - before;
         Ok(())
     }
 }
 
 /// What is to be sampled, and how far that is.
-struct Errand<'a, 'o> {
+struct SampleRequest<'a, 'o> {
     job: &'a Job,
     samples: &'a Range<u32>,
     into: &'a mut Accumulator,
-    course: &'a mut Course,
+    rows_done: &'a mut RowsDone,
     progress: &'a mut Progress<'o>,
     timings: &'a mut Timings,
 }

@@ -97,7 +97,7 @@ struct Case {
     /// The formulas that it needs.
     formulas: &'static [&'static str],
     /// Whether it sends rays over hemispheres.
-    beams: bool,
+    secondary: bool,
     /// Whether it reads an image.
     has_image: bool,
 }
@@ -289,7 +289,7 @@ impl Key {
         }
         text += &self.pattern_colour();
         text += &self.occlusion();
-        if self.beams() {
+        if self.secondary() {
             text += &penumbrae();
         }
         text += &filters();
@@ -320,8 +320,8 @@ impl Key {
         } else {
             include_str!("stage/distance.wgsl")
         });
-        if self.beams() {
-            stages.push(include_str!("stage/beam.wgsl"));
+        if self.secondary() {
+            stages.push(include_str!("stage/secondary.wgsl"));
         }
         stages.push(if self.shadows {
             include_str!("stage/shadow.wgsl")
@@ -334,8 +334,8 @@ impl Key {
     }
 
     /// Whether rays go to lights or over hemispheres.
-    fn beams(&self) -> bool {
-        self.shadows || self.occlusion.iter().any(|case| case.beams)
+    fn secondary(&self) -> bool {
+        self.shadows || self.occlusion.iter().any(|case| case.secondary)
     }
 
     /// The formulas that those stages call.
@@ -347,7 +347,7 @@ impl Key {
             // the surface answers alike
             Shading::LambertLegacy => ["light_response@LambertLegacy", "surface_colour@Lambert"],
         });
-        if self.beams() {
+        if self.secondary() {
             names.extend(BEAMS);
         }
         let stages = self.march.iter().chain(self.normals);
@@ -370,10 +370,10 @@ impl Key {
     /// The function that tells occlusion methods apart.
     fn occlusion(&self) -> String {
         switch(
-            "fn occlusion(at: Surface, how: Occluder, key: vec2u) -> Openness",
+            "fn occlusion(at: Surface, how: Occluder, key: vec2u) -> AmbientVisibility",
             "how.kind",
             self.occlusion.iter().map(|case| (case.kind, case.call)),
-            "Openness(1.0, at.normal)",
+            "AmbientVisibility(1.0, at.normal)",
         )
     }
 }
@@ -467,7 +467,7 @@ const EVERYWHERE: [&str; 19] = [
     "towards_point",
 ];
 
-/// Those of `stage/beam.wgsl`.
+/// Those of `stage/secondary.wgsl`.
 const BEAMS: [&str; 5] = [
     "slope_between",
     "secondary_step",
@@ -557,7 +557,7 @@ fn casts(shadow: &Shadow) -> bool {
     }
 }
 
-/// How `beam.wgsl` finds the penumbra of a shadow, if it has one.
+/// How `secondary.wgsl` finds the penumbra of a shadow, if it has one.
 fn penumbra(shadow: &Shadow) -> Option<&'static str> {
     match shadow {
         Shadow::None | Shadow::Hard => None,
@@ -587,13 +587,13 @@ pub(crate) fn reach(filter: Filter) -> u32 {
 /// Stage, call and formulas of an occlusion method; none where there is nothing to do.
 fn occlusion(method: &Occlusion) -> Option<Case> {
     let kind = number(method);
-    let case = |stage, call, formulas, beams| {
+    let case = |stage, call, formulas, secondary| {
         Some(Case {
             kind,
             stage,
             call,
             formulas,
-            beams,
+            secondary,
             has_image: false,
         })
     };
@@ -601,25 +601,25 @@ fn occlusion(method: &Occlusion) -> Option<Case> {
         Occlusion::None => None,
         Occlusion::Quilez { .. } => case(
             Some(stage!("ao_quilez")),
-            "Openness(ao_quilez(at, how), at.normal)",
+            "AmbientVisibility(ao_quilez(at, how), at.normal)",
             &["visibility"],
             false,
         ),
         Occlusion::Bent { .. } => case(
             Some(stage!("ao_bent")),
-            "Openness(ao_bent(at, how), at.normal)",
+            "AmbientVisibility(ao_bent(at, how), at.normal)",
             &["visibility"],
             false,
         ),
         Occlusion::Evans { .. } => case(
             Some(stage!("ao_evans")),
-            "Openness(ao_evans(at, how), at.normal)",
+            "AmbientVisibility(ao_evans(at, how), at.normal)",
             &["exponential_visibility"],
             false,
         ),
         Occlusion::Upward { .. } => case(
             None,
-            "Openness(visibility(slant(at.normal), how.scale), at.normal)",
+            "AmbientVisibility(visibility(slant(at.normal), how.scale), at.normal)",
             &["visibility", "slant"],
             false,
         ),
@@ -640,13 +640,13 @@ fn occlusion(method: &Occlusion) -> Option<Case> {
         ),
         Occlusion::Hemisphere { .. } => case(
             Some(stage!("ao_hemisphere")),
-            "Openness(ao_hemisphere(at, how, key), at.normal)",
+            "AmbientVisibility(ao_hemisphere(at, how, key), at.normal)",
             &["cosine_direction"],
             true,
         ),
         Occlusion::Obscurance { .. } => case(
             Some(stage!("ao_obscurance")),
-            "Openness(ao_obscurance(at, how, key), at.normal)",
+            "AmbientVisibility(ao_obscurance(at, how, key), at.normal)",
             &["cosine_direction", "obscurance"],
             true,
         ),
@@ -662,7 +662,7 @@ fn pattern(pattern: &Pattern) -> Option<Case> {
             stage,
             call,
             formulas,
-            beams: false,
+            secondary: false,
             has_image: matches!(pattern, Pattern::Triplanar { .. }),
         })
     };

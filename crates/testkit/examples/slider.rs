@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let file = std::fs::File::create(folder.path().join("image.png"))?;
     let mut encoder = png::Encoder::new(file, SIDE, SIDE);
     encoder.set_color(png::ColorType::Rgb);
-    let pixel = |i: u32| [i / SIDE >> 3, i % SIDE >> 3, (i * 7) >> 9].map(|c| c as u8);
+    let pixel = |i: u32| [(i / SIDE) >> 3, (i % SIDE) >> 3, (i * 7) >> 9].map(|c| c as u8);
     let pixels: Vec<u8> = (0..SIDE * SIDE).flat_map(pixel).collect();
     encoder.write_header()?.write_image_data(&pixels)?;
     let path = folder.path().join("scene.star");

@@ -270,7 +270,7 @@ fn advance<S: Simd, M: Marcher, K: Sink<S>>(
                 let m = marcher.back(step.m);
                 let z = marcher.begin(-clearance, m).max(reach.least);
                 let none = S::u32s::splat(s, 0);
-                word = word ^ crossed.0.select(S::u32s::splat(s, INSIDE), none);
+                word ^= crossed.0.select(S::u32s::splat(s, INSIDE), none);
                 step = RayState {
                     t: Lanes::select(crossed, to, step.t),
                     z: Lanes::select(crossed, z, step.z),

@@ -1,7 +1,7 @@
 // Ambient occlusion: how much of the sky reaches a hit. Every method of the papers, and cones as the default.
 
 /// Ambient visibility and the direction that most of the sky is seen in.
-struct Openness {
+struct AmbientVisibility {
     open: f32,
     bent: vec3f,
 }

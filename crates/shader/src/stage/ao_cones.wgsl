@@ -92,12 +92,12 @@ fn cone_clearance(at: Surface, ray: Ray, start: f32, end: f32, cosine: f32, step
     return select(select(min(least, max(rise, 0.0)), 0.0, touched), CONE_FULL, touched && before > touch);
 }
 
-fn ao_cones(at: Surface, how: Occluder) -> Openness {
+fn ao_cones(at: Surface, how: Occluder) -> AmbientVisibility {
     let origin = at.point + at.normal * at.offset;
     let far = min(how.reach, frame.far);
     let ball = touching_ball(at, origin, far);
     if (ball >= far) {
-        return Openness(1.0, at.normal);
+        return AmbientVisibility(1.0, at.normal);
     }
     var to: array<vec3f, CONES>;
     var clear: array<f32, CONES>;
@@ -124,5 +124,5 @@ fn ao_cones(at: Surface, how: Occluder) -> Openness {
         open += share;
         bent += to[k] * share;
     }
-    return Openness(min(open * CONE_WHOLE, 1.0), normalize(bent));
+    return AmbientVisibility(min(open * CONE_WHOLE, 1.0), normalize(bent));
 }

@@ -50,7 +50,7 @@ fn arriving(at: Surface, shininess: f32) -> Arrival {
 }
 
 /// The colour of a surface in the light that it gets.
-fn colour_of(what: LocalMaterial, light: Arrival, at: Surface, seen: Openness) -> vec3f {
+fn colour_of(what: LocalMaterial, light: Arrival, at: Surface, seen: AmbientVisibility) -> vec3f {
     return surface_colour(
         what.albedo, what.emission, what.specular, what.metallic, what.roughness,
         light.diffuse, light.gloss, seen.open, seen.bent, at.normal, at.direction,

@@ -9,7 +9,7 @@ fn shadow(at: Surface, light: Light, to: vec3f, distance: f32) -> f32 {
     if (u32(light.shadow) == SHADOW_NONE || at.side < 0.0) {
         return 1.0;
     }
-    let beam = look(at, to, distance, u32(light.shadow), light.sharpness);
-    counted[COUNT_SHADOW] += beam.samples;
-    return beam.light;
+    let traced = secondary_ray(at, to, distance, u32(light.shadow), light.sharpness);
+    counted[COUNT_SHADOW] += traced.samples;
+    return traced.light;
 }

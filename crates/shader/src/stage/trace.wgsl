@@ -72,7 +72,7 @@ fn trace_ray(pixel: vec2u, index: u32, ray: Ray, span: vec3f) -> Sample {
     let key = scramble(pixel, frame.seed ^ ((index + 1u) * HIT_SEEDS));
     let object = select(frame.objects, u32(max(marks.object, 0.0)), marks.object >= 0.0 && marks.object < f32(frame.objects));
     // inside a solid there is no sky: it is shown as if there were no solid
-    var seen = Openness(1.0, normal);
+    var seen = AmbientVisibility(1.0, normal);
     if (found.side > 0.0) {
         seen = occlusion(at, load_occluder(frame.object_rows + object * OCCLUDER_ROWS), key);
     }

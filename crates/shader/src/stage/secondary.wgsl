@@ -1,8 +1,8 @@
 // How much of something far reaches a surface: shadows, and the rays of occlusion that is sampled.
 // See `zeroset_shade::secondary` for the steps.
 
-/// What a beam found.
-struct Beam {
+/// What a secondary ray found.
+struct SecondaryRay {
     /// What is left of the light: 0 or 1 for a hard one.
     light: f32,
     /// How far it came.
@@ -12,7 +12,7 @@ struct Beam {
 
 /// Looks from a surface along `to`, at most as far as `distance`. `kind` is that of a shadow, one of `SHADOW_...`, which has a penumbra
 /// unless it is hard.
-fn look(at: Surface, to: vec3f, distance: f32, kind: u32, sharpness: f32) -> Beam {
+fn secondary_ray(at: Surface, to: vec3f, distance: f32, kind: u32, sharpness: f32) -> SecondaryRay {
     let origin = at.point + at.normal * at.offset;
     let hard = kind == SHADOW_HARD;
     let width = select(1.0 / max(sharpness, 1e-20), 0.0, hard);
@@ -49,7 +49,7 @@ fn look(at: Surface, to: vec3f, distance: f32, kind: u32, sharpness: f32) -> Bea
             m = min(m, SECONDARY_STEEPEST);
             if (hard) {
                 if (f < stop) {
-                    return Beam(0.0, there, steps);
+                    return SecondaryRay(0.0, there, steps);
                 }
             } else {
                 light = min(light, penumbra(found.y, select(0.0, z, close), r, there, kind, sharpness));
@@ -59,7 +59,7 @@ fn look(at: Surface, to: vec3f, distance: f32, kind: u32, sharpness: f32) -> Bea
                     let touches = f < touch;
                     let leaves = !touched && !touches && z > 0.0 && f > r;
                     if (!skins || f < touch * SKIN_BEHIND || leaves) {
-                        return Beam(0.0, there, steps);
+                        return SecondaryRay(0.0, there, steps);
                     }
                     touched = touched || touches;
                 }
@@ -76,5 +76,5 @@ fn look(at: Surface, to: vec3f, distance: f32, kind: u32, sharpness: f32) -> Bea
         }
         z = min(z, end - t);
     }
-    return Beam(select(light, 1.0, touched), t, steps);
+    return SecondaryRay(select(light, 1.0, touched), t, steps);
 }

@@ -38,7 +38,7 @@ pub(crate) struct Dispatch {
 }
 
 /// Who is told of finished dispatches, and asked whether to go on waiting.
-pub(crate) trait Watcher {
+pub(crate) trait DispatchObserver {
     /// Takes in what a dispatch took.
     fn take(&mut self, dispatch: Dispatch);
     /// Whether to stop waiting.
@@ -46,7 +46,7 @@ pub(crate) trait Watcher {
 }
 
 /// What shaders are dispatched with.
-pub(crate) struct Equipment<'a> {
+pub(crate) struct DispatchSetup<'a> {
     pub(crate) pipelines: &'a Pipelines,
     pub(crate) groups: &'a [BindGroup; STAGES],
 }
@@ -69,7 +69,7 @@ struct Flown {
 }
 
 /// The queue of a device, as far as rendering is concerned.
-pub(crate) struct Flight {
+pub(crate) struct RenderQueue {
     gpu: Arc<Gpu>,
     /// [`Tile`] of every dispatch of the submission that is being made.
     pub(crate) tiles: Buffer,
@@ -86,10 +86,10 @@ pub(crate) struct Flight {
     pub(crate) compiles: bool,
 }
 
-impl Flight {
-    pub(crate) async fn new(gpu: &Arc<Gpu>) -> Result<Flight, GpuError> {
+impl RenderQueue {
+    pub(crate) async fn new(gpu: &Arc<Gpu>) -> Result<RenderQueue, GpuError> {
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
-        Ok(Flight {
+        Ok(RenderQueue {
             tiles: gpu.buffer("tiles", STRIDE * TOGETHER as u64, usage).await?,
             gpu: Arc::clone(gpu),
             encoder: None,
@@ -118,7 +118,7 @@ impl Flight {
     /// Records a dispatch. `groups` are workgroups across and down.
     pub(crate) async fn dispatch(
         &mut self,
-        with: &Equipment<'_>,
+        with: &DispatchSetup<'_>,
         dispatch: Dispatch,
         groups: [u32; 2],
         index: u32,
@@ -188,8 +188,11 @@ impl Flight {
         Ok(())
     }
 
-    /// Submits what is recorded, if anything, and tells `watcher` of submissions that had to be waited for.
-    pub(crate) async fn flush(&mut self, watcher: &mut dyn Watcher) -> Result<(), GpuError> {
+    /// Submits what is recorded, if anything, and tells `observer` of submissions that had to be waited for.
+    pub(crate) async fn flush(
+        &mut self,
+        observer: &mut dyn DispatchObserver,
+    ) -> Result<(), GpuError> {
         let Some(mut encoder) = self.encoder.take() else {
             return Ok(());
         };
@@ -225,16 +228,19 @@ impl Flight {
             },
         });
         while self.flying.len() > AHEAD {
-            self.land(watcher).await?;
+            self.land(observer).await?;
         }
         Ok(())
     }
 
     /// Submits what is recorded and waits for everything.
-    pub(crate) async fn finish(&mut self, watcher: &mut dyn Watcher) -> Result<(), GpuError> {
-        self.flush(watcher).await?;
+    pub(crate) async fn finish(
+        &mut self,
+        observer: &mut dyn DispatchObserver,
+    ) -> Result<(), GpuError> {
+        self.flush(observer).await?;
         while !self.flying.is_empty() {
-            self.land(watcher).await?;
+            self.land(observer).await?;
         }
         Ok(())
     }
@@ -244,33 +250,36 @@ impl Flight {
         &mut self,
         buffer: &Buffer,
         range: impl RangeBounds<u64>,
-        watcher: &mut dyn Watcher,
+        observer: &mut dyn DispatchObserver,
     ) -> Result<(), GpuError> {
-        self.flush(watcher).await?;
+        self.flush(observer).await?;
         let mapped = map(buffer, range);
         if let Some(last) = self.flying.back_mut() {
             last.mapped.push(mapped);
         }
-        self.finish(watcher).await
+        self.finish(observer).await
     }
 
     /// Forgets what is recorded, and waits for what is on its way: not as long as a driver may compile, since nobody needs it
     /// any more.
-    pub(crate) async fn drain(&mut self, watcher: &mut dyn Watcher) -> Result<(), GpuError> {
+    pub(crate) async fn drain(
+        &mut self,
+        observer: &mut dyn DispatchObserver,
+    ) -> Result<(), GpuError> {
         self.flying.iter_mut().for_each(|f| f.work = Work::Left);
         self.encoder = None;
         self.open.clear();
         self.written.clear();
-        self.finish(watcher).await
+        self.finish(observer).await
     }
 
     /// Waits for the oldest submission.
-    async fn land(&mut self, watcher: &mut dyn Watcher) -> Result<(), GpuError> {
+    async fn land(&mut self, observer: &mut dyn DispatchObserver) -> Result<(), GpuError> {
         let Some(flown) = self.flying.front() else {
             return Ok(());
         };
         // what is not waited for to the end stays on its way
-        let stop = || watcher.stops();
+        let stop = || observer.stops();
         (self.gpu)
             .wait(&flown.submission, &flown.mapped, flown.work, &stop)
             .await?;
@@ -297,7 +306,7 @@ impl Flight {
                 }
                 _ => share,
             };
-            watcher.take(dispatch);
+            observer.take(dispatch);
         }
         self.spare.extend(flown.stamps);
         Ok(())
