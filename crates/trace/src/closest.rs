@@ -5,7 +5,7 @@ use crate::march::{Arrived, ITERATIONS, ORDINAL, Sink, Stream, stream};
 use crate::marcher::{Auto, Enhanced, Fixed, Marcher, Relaxed, Sphere};
 use crate::ray::{Common, Queue, WideRay};
 use crate::simd::{Chosen, INSIDE, Sheet, TILE_RAYS};
-use crate::tile::{Exhausted, Hits, Rays, Solid};
+use crate::tile::{Exhausted, Hits, Rays, Scratch, Solid};
 use fearless_simd::{Simd, prelude::*};
 use zeroset_eval::Workspace;
 use zeroset_number::lanes::LaneMask;
@@ -35,6 +35,20 @@ pub(crate) struct MarchMemory<'q> {
     /// Evaluations of the rays that hit nothing, by number.
     pub(crate) steps: &'q mut Sheet,
     pub(crate) exhausted: &'q mut Vec<Exhausted>,
+}
+
+impl Scratch {
+    /// The queue, and what following its rays takes.
+    pub(crate) fn split(&mut self) -> (&Queue, MarchMemory<'_>) {
+        let memory = MarchMemory {
+            hits: &mut self.hits,
+            rays: &mut self.rays,
+            work: &mut self.work,
+            steps: &mut self.steps,
+            exhausted: &mut self.exhausted,
+        };
+        (&self.queue, memory)
+    }
 }
 
 /// Finds where the rays of the queue first meet the surface, in the order in which they do. What is found of a hit is its ray, the

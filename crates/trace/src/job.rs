@@ -1,6 +1,6 @@
 //! What is done for a tile: the stages, sample by sample.
 
-use crate::closest::{MarchMemory, Plan, closest};
+use crate::closest::{Plan, closest};
 use crate::integrator::{Direct, Integrator, TileSample};
 use crate::march::ORDINAL;
 use crate::normal::{normals, place};
@@ -171,14 +171,8 @@ impl<'a> Job<'a> {
             q.steps.fill(0.0);
         }
         primary::aim(s, solid.view, area, &q.jitter, &mut q.queue);
-        let rooms = MarchMemory {
-            hits: &mut q.hits,
-            rays: &mut q.rays,
-            work: &mut q.work,
-            steps: &mut q.steps,
-            exhausted: &mut q.exhausted,
-        };
-        q.counts.march += closest(s, &self.plan, solid, &q.queue, rooms);
+        let (queue, memory) = q.split();
+        q.counts.march += closest(s, &self.plan, solid, queue, memory);
         self.surfaces(s, solid, q);
         let sample = TileSample {
             job: self,

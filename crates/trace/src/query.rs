@@ -1,6 +1,6 @@
 //! Rays of one's own, from anywhere to anywhere: what they meet first, all that they meet, whether anything stands in their way.
 
-use crate::closest::{MarchMemory, Plan, closest, crossings};
+use crate::closest::{Plan, closest, crossings};
 use crate::march::ORDINAL;
 use crate::normal::{normals, place};
 use crate::ray;
@@ -294,17 +294,11 @@ impl Query<'_> {
                 steps: false,
             };
             at_level!(query.picture.renderer.level, s => {
-                let rooms = MarchMemory {
-                    hits: &mut q.hits,
-                    rays: &mut q.rays,
-                    work: &mut q.work,
-                    steps: &mut q.steps,
-                    exhausted: &mut q.exhausted,
-                };
+                let (queue, memory) = q.split();
                 if query.most == 1 {
-                    closest(s, &plan, solid, &q.queue, rooms);
+                    closest(s, &plan, solid, queue, memory);
                 } else {
-                    crossings(s, query.most, solid, &q.queue, rooms);
+                    crossings(s, query.most, solid, queue, memory);
                 }
                 place(s, solid, 0, false, q);
                 normals(s, solid, Normals::Exact, q);
