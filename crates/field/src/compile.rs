@@ -41,6 +41,8 @@ struct Lowering<'l> {
     steps: Vec<Lowered>,
     params: Vec<f32>,
     grids: Vec<Arc<Grid>>,
+    /// See [`Structure::sides`].
+    sides: Vec<u32>,
     /// Shared nodes: the value of a node at a point.
     known: HashMap<(usize, u32), u32>,
     limits: &'l Limits,
@@ -59,6 +61,7 @@ pub(crate) fn compile(field: &Field, limits: &Limits) -> Result<Program, Compile
         steps: Vec::new(),
         params: Vec::new(),
         grids: Vec::new(),
+        sides: Vec::new(),
         known: HashMap::new(),
         limits,
         steep: false,
@@ -69,6 +72,7 @@ pub(crate) fn compile(field: &Field, limits: &Limits) -> Result<Program, Compile
     let structure = Structure {
         values: registers(&l.steps, result, false)?,
         marks: registers(&l.steps, result, true)?,
+        sides: l.sides,
     };
     Ok(Program {
         structure: Arc::new(structure),
@@ -210,6 +214,11 @@ impl Lowering<'_> {
             Node::Paint { paint, shape } => {
                 let value = self.field(shape, point)?;
                 self.mark(*paint, value)?
+            }
+            Node::Sided(shape) => {
+                let value = self.field(shape, point)?;
+                self.sides.push(self.params.len() as u32);
+                self.change(code::SCALE, value, INPUT, &[1.0])?
             }
         };
         self.known.insert((field.key(), point), value);

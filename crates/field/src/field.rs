@@ -83,6 +83,9 @@ pub enum Node {
     /// A grid of samples. (Scenes have no word for it yet: it holds the renderers to the same grids.)
     #[doc(hidden)]
     Sampled(Arc<Sampled>),
+    /// The same field; its value turned around for rays inside it, see [`Program::inside`](crate::program::Program::inside).
+    #[doc(hidden)]
+    Sided(Field),
     /// A field whose surface has a material, or belongs to an object, of its own.
     Paint {
         /// Which.
@@ -503,6 +506,21 @@ impl Field {
         Field::new(Node::Sampled(sampled), facts)
     }
 
+    /// A union of clear and opaque bodies of which each can be told from the other by rays inside: see
+    /// [`Program::inside`](crate::program::Program::inside).
+    ///
+    /// # Errors
+    /// A tree too deep.
+    pub fn clear_union(clear: Field, opaque: Field) -> Result<Field, FieldError> {
+        let union = zeroset_catalogue::entries::Catalogue::union();
+        Field::join(union, Vec::new(), vec![clear.sided()?, opaque])?.sided()
+    }
+
+    fn sided(&self) -> Result<Field, FieldError> {
+        let facts = self.facts().above()?;
+        Ok(Field::new(Node::Sided(self.clone()), facts))
+    }
+
     /// This field painted, where no part of it is painted in the same way already.
     ///
     /// # Errors
@@ -541,6 +559,7 @@ impl Field {
             | Node::Place { shape, .. }
             | Node::Repeat { shape, .. }
             | Node::Polar { shape, .. }
+            | Node::Sided(shape)
             | Node::Paint { shape, .. } => std::slice::from_ref(shape),
         }
     }

@@ -61,7 +61,7 @@ fn level_bounds(field: &Field, level: f64, known: &Known) -> Aabb {
         // copies are at least as far as their boxes
         Node::Repeat { .. } | Node::Polar { .. } => facts.bounds.grow(level),
         Node::Formula(_) | Node::Sampled(_) => facts.bounds.grow(level / facts.slope),
-        Node::Paint { shape, .. } => below(shape, level),
+        Node::Sided(shape) | Node::Paint { shape, .. } => below(shape, level),
     };
     known.borrow_mut().insert(key, found);
     found

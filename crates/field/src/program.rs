@@ -22,6 +22,8 @@ pub struct Structure {
     pub values: Code,
     /// Instructions for values with marks: which object and which materials a point belongs to.
     pub marks: Code,
+    /// Parameters that are 1 for rays outside all bodies, and others for rays inside clear ones: see [`Program::inside`].
+    pub sides: Vec<u32>,
 }
 
 /// A compiled field. Cheap to clone.
@@ -37,6 +39,9 @@ pub struct Program {
 
 /// Slopes below this are none.
 pub const FLAT: f32 = 1e-12;
+
+/// The side in [`Program::inside_marks`].
+pub const INSIDE_MARKS: f32 = -0.5;
 
 /// Programs that divide by more than this hold a field that may be far less than the distance.
 const CLOSE: f64 = 1.25;
@@ -121,6 +126,37 @@ impl Program {
     /// Its numbers and grids.
     pub fn data(&self) -> &Data {
         &self.data
+    }
+
+    /// The program for rays inside clear bodies, where there are clear and opaque ones.
+    ///
+    /// With c and o the values of all clear and of all opaque bodies, this program is `min(c, o)`, their union, which is zero at no place
+    /// between a glass and the table that it stands on. The other one is `-min(-c, o)`: the clear bodies without the opaque ones.
+    /// (Both are `s min(s c, o)`: the structure is the same.)
+    pub fn inside(&self) -> Option<Program> {
+        self.sided(-1.0)
+    }
+
+    /// The program that tells for rays inside clear bodies to which body a place belongs that is a little behind a surface. Where a clear and
+    /// an opaque body touch, it is as much behind the one as before the other: the opaque one counts.
+    pub fn inside_marks(&self) -> Option<Program> {
+        self.sided(INSIDE_MARKS)
+    }
+
+    fn sided(&self, side: f32) -> Option<Program> {
+        if self.structure.sides.is_empty() {
+            return None;
+        }
+        let mut data = Data::clone(&self.data);
+        for &at in &self.structure.sides {
+            if let Some(x) = data.params.get_mut(at as usize) {
+                *x = side;
+            }
+        }
+        Some(Program {
+            data: Arc::new(data),
+            ..self.clone()
+        })
     }
 
     /// What finds its values.

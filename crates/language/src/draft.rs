@@ -238,11 +238,10 @@ pub(crate) fn check_size([width, height]: [u32; 2], limits: &Limits) -> Result<(
 /// The sun of a scene that states no light.
 fn key_light(shading: Shading) -> Light {
     let warm = Vec3::new(1.0, 0.95, 0.86);
-    // Lambert's law divides by pi where Phong's model does not
-    let strength = if shading == Shading::Phong {
-        0.9
-    } else {
-        0.9 * std::f32::consts::PI
+    // Lambert's law divides by pi where the other models do not
+    let strength = match shading {
+        Shading::Physical | Shading::Phong => 0.9,
+        Shading::Lambert | Shading::LambertLegacy => 0.9 * std::f32::consts::PI,
     };
     Light {
         source: light::Source::Directional {

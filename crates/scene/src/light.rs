@@ -71,14 +71,20 @@ impl Default for Sky {
     }
 }
 
+/// How wide the haze is in which the colour of the horizon goes over into those above and below: the square of the height of a direction
+/// (the sine of its angle) at which about half of it is left.
+pub const HAZE: f32 = 0.1225;
+
 impl Sky {
     /// Linear colour seen along a normalised direction: smooth from bottom over horizon to top.
     pub fn colour(&self, direction: Vec3) -> Vec3 {
-        let y = direction.y;
-        if y >= 0.0 {
-            self.horizon.lerp(self.top, y.sqrt())
+        let square = (direction.y * direction.y).min(1.0);
+        let end = if direction.y < 0.0 {
+            self.bottom
         } else {
-            self.horizon.lerp(self.bottom, (-y).sqrt())
-        }
+            self.top
+        };
+        self.horizon
+            .lerp(end, square * (1.0 + HAZE) / (square + HAZE))
     }
 }

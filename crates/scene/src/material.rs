@@ -92,16 +92,30 @@ pub struct Image {
 pub struct Material {
     /// Colour.
     pub pattern: Pattern,
-    /// Strength of the highlight of the Phong model.
+    /// Strength of the highlight. Where shading is physical, 0.25 is what usual glass, stone or plastic reflects.
     pub specular: f32,
     /// Exponent of the highlight of the Phong model.
     pub shininess: f32,
-    /// 0 plastic or stone, 1 metal: highlights and reflections of the sky take the surface's colour.
+    /// 0 plastic or stone, 1 metal: highlights and reflections take the surface's colour, and nothing else is reflected.
     pub metallic: f32,
-    /// 0 mirror, 1 chalk: how wide reflections of the sky are.
+    /// 0 mirror, 1 chalk: how wide reflections are.
     pub roughness: f32,
+    /// 0 opaque, 1 glass: the share of light that is not reflected and goes on inside.
+    #[serde(default)]
+    pub transmission: f32,
+    /// Index of refraction of what transmits: 1.33 water, 1.5 glass, 2.42 diamond.
+    #[serde(default = "usual_ior")]
+    pub ior: f32,
+    /// What light loses inside over a scene unit: of each colour the exponent of Beer's law.
+    #[serde(default)]
+    pub attenuation: Vec3,
     /// Light of its own, linear.
     pub emission: Vec3,
+}
+
+/// That of glass.
+const fn usual_ior() -> f32 {
+    1.5
 }
 
 impl Default for Material {
@@ -114,6 +128,9 @@ impl Default for Material {
             shininess: 40.0,
             metallic: 0.0,
             roughness: 0.5,
+            transmission: 0.0,
+            ior: usual_ior(),
+            attenuation: Vec3::ZERO,
             emission: Vec3::ZERO,
         }
     }

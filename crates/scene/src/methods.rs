@@ -6,7 +6,7 @@
 //! compile.
 
 use crate::film::Plane;
-use crate::settings::{Antialias, Filter, March, Normals, Occlusion, Shading, Shadow};
+use crate::settings::{Antialias, Filter, Integrator, March, Normals, Occlusion, Shading, Shadow};
 use std::fmt;
 use zeroset_catalogue::{LARGE, SMALL};
 
@@ -407,12 +407,13 @@ impl Group {
 }
 
 /// Every kind of methods.
-pub const GROUPS: [Group; 8] = [
+pub const GROUPS: [Group; 9] = [
     Group::of::<March>(),
     Group::of::<Normals>(),
     Group::of::<Shadow>(),
     Group::of::<Occlusion>(),
     Group::of::<Shading>(),
+    Group::of::<Integrator>(),
     Group::of::<Antialias>(),
     Group::of::<Filter>(),
     Group::of::<Plane>(),
@@ -634,6 +635,7 @@ mod tests {
         sound::<Shadow>();
         sound::<Occlusion>();
         sound::<Shading>();
+        sound::<Integrator>();
         sound::<Antialias>();
         sound::<Filter>();
         sound::<Plane>();

@@ -5,9 +5,10 @@ use crate::light::{Light, Sky};
 use crate::material::Material;
 use crate::settings::{Occlusion, Settings};
 use crate::valid::{self, SceneError};
+use std::collections::HashSet;
 use zeroset_catalogue::bounds::Aabb;
 use zeroset_catalogue::entries::Catalogue;
-use zeroset_field::field::{Field, FieldError, Paint};
+use zeroset_field::field::{Field, FieldError, Node, Paint};
 
 /// A field with a material.
 #[derive(Clone, Debug)]
@@ -195,10 +196,47 @@ impl Scene {
                 .paint(Paint::Object(number))
         });
         let shapes = painted.collect::<Result<Vec<Field>, FieldError>>()?;
-        if shapes.is_empty() {
-            return Ok(None);
+        let union = |shapes: Vec<Field>| Field::join(Catalogue::union(), Vec::new(), shapes);
+        let (mut clear, mut opaque) = (Vec::new(), Vec::new());
+        for (object, shape) in self.objects().iter().zip(&shapes) {
+            let side = match self.is_clear(object) {
+                true => &mut clear,
+                false => &mut opaque,
+            };
+            side.push(shape.clone());
         }
-        Field::join(Catalogue::union(), Vec::new(), shapes).map(Some)
+        match (clear.is_empty(), opaque.is_empty()) {
+            (true, true) => Ok(None),
+            (false, false) => Field::clear_union(union(clear)?, union(opaque)?).map(Some),
+            _ => union(shapes).map(Some),
+        }
+    }
+
+    /// Whether light goes through an object: it, or a part of it, has a material that transmits.
+    pub fn is_clear(&self, object: &Object) -> bool {
+        let transmits = |number: u16| {
+            let material = self.materials().get(usize::from(number));
+            material.is_some_and(|m| m.transmission > 0.0)
+        };
+        if !self.materials().iter().any(|m| m.transmission > 0.0) {
+            return false;
+        }
+        let (mut seen, mut waiting) = (HashSet::new(), vec![&object.field]);
+        let mut painted = transmits(object.material);
+        while let Some(field) = waiting.pop() {
+            if painted || field.facts().materials == 0 || !seen.insert(field.key()) {
+                continue;
+            }
+            if let Node::Paint {
+                paint: Paint::Material(number),
+                ..
+            } = field.node()
+            {
+                painted |= transmits(*number);
+            }
+            waiting.extend(field.children());
+        }
+        painted
     }
 }
 

@@ -204,12 +204,35 @@ choice! {
     /// Which light model turns a hit into a colour.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
     pub enum Shading("shading", "a light model", "Shading") {
+        /// Small mirrors over a matte body, with Fresnel's law and all light that mirrors send on.
+        Physical("physical", "Physical", "Cook and Torrance 1982; Walter et al. 2007; Turquin 2019"),
         /// Ambient, diffuse and Blinn's highlight, none where the light is behind the surface.
         Phong("phong", "Phong", "Tomczak 2012, equations 3.1 to 3.5"),
         /// The cosine law, albedo over pi, point lights with inverse squares.
         Lambert("lambert", "Lambert", "Munini 2021, 3.3"),
         /// `(n . l) colour / (4 pi)`, without falloff.
         LambertLegacy("lambert_legacy", "Lambert as printed", "Munini 2021, 3.3"),
+    }
+}
+
+/// How often a ray goes on.
+const BOUNCES: Param =
+    Param::new("Bounces", Unit::Count, Allowed::between(0.0, 64.0)).usual(0.0, 16.0);
+
+choice! {
+    /// Which ways light takes to the eye.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(tag = "method", deny_unknown_fields)]
+    pub enum Integrator("integrator", "an integrator", "Integrators") {
+        /// From lights and sky, and on over smooth surfaces and through clear bodies.
+        Whitted("whitted", "Reflections", "Whitted 1980; Keinert et al. 2014, 4") {
+            /// How often a ray is reflected.
+            reflections: u32 = 2, BOUNCES;
+            /// How often a ray passes the surface of a clear body, or is reflected within it.
+            refractions: u32 = 8, BOUNCES
+        },
+        /// From lights and sky, reflected once.
+        Direct("direct", "Direct light", "Tomczak 2012, 3"),
     }
 }
 
@@ -235,6 +258,8 @@ pub struct Settings {
     pub normals: Normals,
     /// How light becomes colour.
     pub shading: Shading,
+    /// Which ways light takes.
+    pub integrator: Integrator,
     /// Ambient occlusion, where an object does not choose its own.
     pub occlusion: Occlusion,
     /// Edges.
@@ -257,6 +282,7 @@ impl Settings {
         footprint: 0.5,
         normals: Normals::ALL[0],
         shading: Shading::ALL[0],
+        integrator: Integrator::ALL[0],
         occlusion: Occlusion::ALL[0],
         antialias: Antialias::ALL[0],
         seed: 0,

@@ -5,7 +5,7 @@ mod fault;
 mod methods;
 
 pub use fault::{Fault, PathStep, SceneError};
-pub use methods::{antialias, march, occlusion, shadow};
+pub use methods::{antialias, integrator, march, occlusion, shadow};
 
 use crate::camera::{Camera, Lens};
 use crate::light::{Light, Sky, Source};
@@ -190,6 +190,9 @@ pub fn material(material: &Material) -> Checked {
     number("shininess", material.shininess, 1.0, 1e4)?;
     number("metallic", material.metallic, 0.0, 1.0)?;
     number("roughness", material.roughness, 0.0, 1.0)?;
+    number("transmission", material.transmission, 0.0, 1.0)?;
+    number("ior", material.ior, 1.0, 4.0)?;
+    colour("attenuation", material.attenuation)?;
     colour("emission", material.emission)
 }
 
@@ -297,6 +300,7 @@ pub fn settings(settings: &Settings, samples: u32) -> Checked {
     setting(Settings::DISCONTINUITY_REDUCTION, reduction)?;
     setting(Settings::FOOTPRINT, Real(settings.footprint))?;
     setting(Settings::EXPOSURE, Real(settings.exposure))?;
+    integrator(&settings.integrator).map_err(|e| e.at("integrator"))?;
     occlusion(&settings.occlusion, samples).map_err(|e| e.at("occlusion"))?;
     antialias(&settings.antialias, samples).map_err(|e| e.at("antialias"))
 }

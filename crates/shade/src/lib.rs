@@ -20,8 +20,10 @@
 
 #![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
+pub mod bsdf;
 pub mod light;
 pub mod march;
+pub mod microfacet;
 pub mod normal;
 pub mod occlusion;
 pub mod pattern;

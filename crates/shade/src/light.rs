@@ -1,5 +1,6 @@
 //! What arrives at a surface from a light.
 
+use crate::microfacet::{LIGHT_ALPHA, alpha, distribution, schlick, visibility};
 use crate::{each, parameters};
 use zeroset_number::{Real, Vec3};
 use zeroset_scene::light::{Light, Source};
@@ -11,6 +12,12 @@ pub fn luminance(c: [f32; 3]) -> f32 {
     0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]
 }
 
+/// As [`luminance`], of numbers of any type.
+#[inline(always)]
+pub fn luminance_of<R: Real>(c: Vec3<R>) -> R {
+    c.x * 0.2126 + c.y * 0.7152 + c.z * 0.0722
+}
+
 /// How a surface answers a light of radiance 1 that is not in shadow.
 #[derive(Clone, Copy, Debug)]
 pub struct Response<R> {
@@ -18,6 +25,8 @@ pub struct Response<R> {
     pub diffuse: R,
     /// In the highlight, before `falloff` and the material's strength.
     pub gloss: R,
+    /// The part of it that the rise of Fresnel's law weighs.
+    pub grazing: R,
     /// What distance leaves of the light.
     pub falloff: R,
 }
@@ -57,11 +66,30 @@ pub fn highlight<R: Real>(n: Vec3<R>, to: Vec3<R>, d: Vec3<R>, cosine: R, shinin
     R::choose(cosine.above(0.0), peak, cosine.lit(0.0))
 }
 
+/// The highlight of small mirrors (Cook and Torrance 1982; Walter et al. 2007) by the cosine law, for lights whose radiance a white
+/// surface shows that faces them: pi times the reflectance. Then the part of it that Schlick's term weighs.
+#[inline(always)]
+pub fn mirror_highlight<R: Real>(
+    n: Vec3<R>,
+    to: Vec3<R>,
+    d: Vec3<R>,
+    cosine: R,
+    roughness: R,
+) -> [R; 2] {
+    let alpha = alpha(roughness).max(LIGHT_ALPHA);
+    let half = to - d;
+    let half = half / half.length().max(1e-12);
+    let to_eye = (-n.dot(d)).max(1e-4);
+    let mirrors = distribution(n, half, alpha) * visibility(cosine, to_eye, alpha);
+    let all = mirrors * cosine * std::f32::consts::PI;
+    [all, all * schlick(half.dot(to))]
+}
+
 /// What a surface of normal `n` makes of a light in direction `to` at `distance`; `point` is whether that is at a place. `d` is
-/// the direction of the ray that sees it.
+/// the direction of the ray that sees it, `finish` how smooth it is: its roughness, or for Phong's model its shininess.
 ///
-/// Phong's model as Tomczak 2012 has it, equations 3.1 to 3.5; Lambert's law, albedo / pi, with inverse squares for point
-/// lights (Munini 2021, 3.3); the same as printed there, `(n . l) colour / (4 pi)` without falloff.
+/// Mirrors over a matte body; Phong's model as Tomczak 2012 has it, equations 3.1 to 3.5; Lambert's law, albedo / pi, with inverse
+/// squares for point lights (Munini 2021, 3.3); the same as printed there, `(n . l) colour / (4 pi)` without falloff.
 #[inline(always)]
 pub fn response<R: Real>(
     shading: Shading,
@@ -69,21 +97,25 @@ pub fn response<R: Real>(
     (to, distance): (Vec3<R>, R),
     n: Vec3<R>,
     d: Vec3<R>,
-    shininess: R,
+    finish: R,
 ) -> Response<R> {
     let cosine = n.dot(to).max(0.0);
     let scale = match shading {
-        Shading::Phong => 1.0,
+        Shading::Physical | Shading::Phong => 1.0,
         Shading::Lambert => std::f32::consts::FRAC_1_PI,
         Shading::LambertLegacy => 0.25 * std::f32::consts::FRAC_1_PI,
     };
     let falls = point && !matches!(shading, Shading::LambertLegacy);
+    let none = cosine.lit(0.0);
+    let [gloss, grazing] = match shading {
+        Shading::Physical => mirror_highlight(n, to, d, cosine, finish),
+        Shading::Phong => [highlight(n, to, d, cosine, finish), none],
+        Shading::Lambert | Shading::LambertLegacy => [none, none],
+    };
     Response {
         diffuse: cosine * scale,
-        gloss: match shading {
-            Shading::Phong => highlight(n, to, d, cosine, shininess),
-            Shading::Lambert | Shading::LambertLegacy => cosine.lit(0.0),
-        },
+        gloss,
+        grazing,
         falloff: if falls {
             falloff(distance)
         } else {
@@ -99,6 +131,8 @@ pub struct Arrival<R> {
     pub diffuse: Vec3<R>,
     /// In the highlight, before the material's strength.
     pub gloss: Vec3<R>,
+    /// The part of it that the rise of Fresnel's law weighs.
+    pub grazing: Vec3<R>,
     /// How much this light would be without its shadow: its share of the shadow plane.
     pub share: R,
 }
@@ -113,13 +147,14 @@ pub fn arrival<R: Real<Scalar = f32>>(
     n: Vec3<R>,
     d: Vec3<R>,
     lit: R,
-    shininess: R,
+    finish: R,
 ) -> Arrival<R> {
     let point = matches!(light.source, Source::Point { .. });
-    let response = response(shading, point, to, n, d, shininess);
+    let response = response(shading, point, to, n, d, finish);
     let arriving = response.falloff * lit;
     let colour = light.radiance.to_array();
     let (diffuse, gloss) = (response.diffuse * arriving, response.gloss * arriving);
+    let grazing = response.grazing * arriving;
     Arrival {
         diffuse: each(
             #[inline(always)]
@@ -128,6 +163,10 @@ pub fn arrival<R: Real<Scalar = f32>>(
         gloss: each(
             #[inline(always)]
             |k| gloss * colour[k],
+        ),
+        grazing: each(
+            #[inline(always)]
+            |k| grazing * colour[k],
         ),
         share: response.falloff * luminance(colour),
     }

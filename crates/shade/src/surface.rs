@@ -1,7 +1,8 @@
 //! The colour of a surface, from what it is made of and the light that it gets.
 
-use crate::sky::{SkyColours, ambient, colour as sky};
-use zeroset_number::{Ops, Real, Vec3};
+use crate::microfacet::{mean_schlick, single};
+use crate::sky::{SkyColours, ambient, glossy};
+use zeroset_number::{Real, Vec3};
 use zeroset_scene::settings::Shading;
 
 /// What a surface is made of at one place: where materials meet, a mixture of them.
@@ -17,6 +18,10 @@ pub struct LocalMaterial<R> {
     pub metallic: R,
     /// 0 mirror, 1 chalk.
     pub roughness: R,
+    /// 0 opaque, 1 glass.
+    pub transmission: R,
+    /// Exponent of the highlight of Phong's model.
+    pub shininess: R,
 }
 
 /// The light that a place on a surface gets, and the ways to it.
@@ -26,6 +31,8 @@ pub struct Lighting<R> {
     pub diffuse: Vec3<R>,
     /// In highlights, before the material's strength.
     pub gloss: Vec3<R>,
+    /// The part of it that mirrors reflect that are seen from the side: what the rise of Fresnel's law weighs.
+    pub grazing: Vec3<R>,
     /// Ambient visibility, which scales what comes from the sky and nothing else (Tomczak 2012, equation 3.32).
     pub open: R,
     /// Where most of the sky is seen.
@@ -36,22 +43,87 @@ pub struct Lighting<R> {
     pub direction: Vec3<R>,
 }
 
-/// Reflectance of a non-metal looked at along its normal.
+/// The highlight's strength that stands for the reflectance of the index of refraction itself.
+pub const USUAL_SPECULAR: f32 = 0.25;
+
+/// Reflectance along the normal of a body that is no metal, of usual glass, stone or plastic (an index of refraction of 1.5).
 const DIELECTRIC: f32 = 0.04;
 
-/// The colour of a surface: light by the cosine law and the ambient term, highlights, the sky's reflection, its own light.
-///
-/// The reflection is the sky's colour along the mirror direction, dimmed to its ambient colour by roughness and weighted by
-/// Schlick's (1994) approximation of Fresnel's law; wholly rough surfaces and Lambert's models have none.
+/// Up to this roughness reflections are followed...
+pub const SHARP: f32 = 0.25;
+/// ...and from this on they are blurred as a whole; between the two, both are mixed.
+pub const BLURRED: f32 = 0.5;
+
+/// What brings less than this share of its light to the eye is not followed.
+pub const FAINTEST: f32 = 1.0 / 256.0;
+
+/// The share of a surface's reflection that is followed as if it were a mirror. The rest is the sky's, blurred and dimmed where little of
+/// the sky is seen.
+#[inline(always)]
+pub fn followed_share<R: Real>(roughness: R) -> R {
+    roughness.smoothstep(SHARP, BLURRED).one_minus()
+}
+
+/// What reflects less than this along its normal reflects less from the side too: nothing in nature does, so this is how a material says
+/// that it does not reflect at all (Lagarde and de Rousiers 2014, 3.1.3).
+const LEAST_NATURAL: f32 = 0.02;
+
+/// What mirrors reflect.
+#[derive(Clone, Copy, Debug)]
+pub struct Mirrored<R> {
+    /// Reflectance along the normal: the colour of metals, and of all others that of glass, times the strength that the material states.
+    pub straight: Vec3<R>,
+    /// Reflectance from the side.
+    pub edge: R,
+    /// How much more than in one reflection comes from mirrors that mirror each other (Turquin 2019).
+    pub again: Vec3<R>,
+    /// How much of the light from everywhere is reflected in all.
+    pub all: Vec3<R>,
+}
+
+/// What the mirrors of a surface reflect to an eye at this cosine.
+#[inline(always)]
+pub fn mirrored<R: Real>(what: &LocalMaterial<R>, cosine: R) -> Mirrored<R> {
+    let clear = (what.specular * (DIELECTRIC / USUAL_SPECULAR)).min(1.0);
+    let dull = what.metallic.one_minus();
+    let straight = what.albedo * what.metallic + Vec3::splat(clear * dull);
+    let edge = (clear * (1.0 / LEAST_NATURAL)).min(1.0) * dull + what.metallic;
+    let rise = mean_schlick(cosine, what.roughness);
+    let once = single(cosine, what.roughness);
+    let again = straight * (once.one_minus() / once) + Vec3::splat(once.lit(1.0));
+    let mean = straight * rise.one_minus() + Vec3::splat(rise * edge);
+    Mirrored {
+        straight,
+        edge,
+        again,
+        all: (mean.times(again) * once).map(
+            #[inline(always)]
+            |x| x.min(1.0),
+        ),
+    }
+}
+
+/// The share of the sky that a reflection sees where the ambient visibility is `open` (Lagarde and de Rousiers 2014, listing 26).
+#[inline(always)]
+pub fn reflected_visibility<R: Real>(open: R, cosine: R, roughness: R) -> R {
+    let power = (roughness * -16.0 - 1.0).exp2();
+    let base = (cosine.clamp01() + open).max(1e-6);
+    ((base.ln() * power).exp() - 1.0 + open).clamp01()
+}
+
+/// The colour of a surface: light by the cosine law and the ambient term, highlights, the sky's reflection but for the share of it that
+/// is `followed`, its own light.
 #[inline(always)]
 pub fn colour<R: Real>(
     shading: Shading,
     sky: &SkyColours<R::Scalar>,
     what: &LocalMaterial<R>,
     light: &Lighting<R>,
+    followed: R,
 ) -> Vec3<R> {
     match shading {
-        Shading::Phong => phong(sky, what, light),
+        Shading::Physical => physical(sky, what, light, followed),
+        Shading::Phong => matte(sky, what, light) + light.gloss * what.specular + what.emission,
         Shading::Lambert | Shading::LambertLegacy => matte(sky, what, light) + what.emission,
     }
 }
@@ -67,35 +139,62 @@ fn matte<R: Real>(
     what.albedo.times(light.diffuse + around * light.open)
 }
 
+/// Small mirrors over a body that scatters what they let through; metals let nothing through.
 #[inline(always)]
-fn phong<R: Real>(
-    sky_colours: &SkyColours<R::Scalar>,
+fn physical<R: Real>(
+    sky: &SkyColours<R::Scalar>,
     what: &LocalMaterial<R>,
     light: &Lighting<R>,
+    followed: R,
 ) -> Vec3<R> {
     let (n, d) = (light.normal, light.direction);
-    let dull = what.metallic.one_minus();
-    let incoming = matte(sky_colours, what, light);
-    // highlights and reflections of metals take their colour
-    let tinted = what.albedo * what.metallic + Vec3::splat(dull);
-    let cosine = -n.dot(d);
-    let mirror = d + n * (cosine * 2.0);
-    let (sharp, wide) = (
-        sky(sky_colours, mirror.y),
-        ambient(sky_colours, n.y) / sky_colours.ambient.max(1e-3),
-    );
-    let rough = what.roughness;
-    let seen = sharp * rough.one_minus() + wide * rough;
-    let grazing = cosine.clamp01().one_minus().powi(5);
-    let smooth = rough.one_minus();
-    let straight = what.albedo * what.metallic + Vec3::splat(dull * DIELECTRIC);
-    let (rise, share) = (grazing * smooth, smooth * light.open);
-    let mirrored = (straight * rise.one_minus() + Vec3::splat(rise)) * share;
-    // what a rough metal does not mirror it scatters: the ambient light in its own colour
-    let scattered = incoming * (what.metallic * rough);
-    incoming * dull
-        + scattered
-        + tinted.times(light.gloss) * what.specular
-        + mirrored.times(seen)
-        + what.emission
+    let facing = -n.dot(d);
+    let cosine = facing.clamp01();
+    let mirrors = mirrored(what, cosine);
+    let highlight =
+        mirrors.straight.times(light.gloss - light.grazing) + light.grazing * mirrors.edge;
+    // what the mirrors of a body that is no metal leave, all colours alike
+    let clear = LocalMaterial {
+        metallic: facing.lit(0.0),
+        ..*what
+    };
+    let left = mirrored(&clear, cosine).all.x.one_minus() * what.metallic.one_minus();
+    let body = matte(sky, what, light) * (left * what.transmission.one_minus());
+    let mirror = d + n * (facing * 2.0);
+    let seen = reflected_visibility(light.open, cosine, what.roughness) * followed.one_minus();
+    let around = glossy(sky, mirror.y, what.roughness) * seen;
+    body + mirrors.again.times(highlight) + mirrors.all.times(around) + what.emission
+}
+
+/// How a clear body takes a ray: the shares that are reflected and let through, and the direction of the latter.
+#[derive(Clone, Copy, Debug)]
+pub struct Refraction<R> {
+    /// The share that is reflected; 1 where nothing gets through.
+    pub reflected: R,
+    /// Where the rest goes (Snell's law), of length 1.
+    pub direction: Vec3<R>,
+}
+
+/// What becomes of a ray of direction `d` at a border with the normal `n` on its side; `ior` is the index of refraction behind it over that
+/// before it.
+#[inline(always)]
+pub fn refraction<R: Real>(d: Vec3<R>, n: Vec3<R>, ior: R) -> Refraction<R> {
+    let cosine = (-n.dot(d)).clamp01();
+    let over = ior.recip();
+    let square = (cosine.sq().one_minus() * over.sq()).one_minus();
+    let behind = square.max(0.0).sqrt();
+    let direction = d * over + n * (over * cosine - behind);
+    Refraction {
+        reflected: crate::microfacet::fresnel(cosine, ior),
+        direction: direction / direction.length().max(1e-12),
+    }
+}
+
+/// What remains of light after the way `t` through a body that takes `attenuation` of it per length (Beer's law).
+#[inline(always)]
+pub fn transmittance<R: Real>(attenuation: Vec3<R>, t: R) -> Vec3<R> {
+    attenuation.map(
+        #[inline(always)]
+        |a| (-(a * t)).exp(),
+    )
 }

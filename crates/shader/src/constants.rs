@@ -1,8 +1,8 @@
 //! Constants that the CPU's renderer and shaders share, as WGSL.
 
 use std::fmt::Write;
-use zeroset_field::program::FLAT;
-use zeroset_shade::{march, occlusion, pattern, sampling, secondary, shadow, skin, view};
+use zeroset_field::program::{FLAT, INSIDE_MARKS};
+use zeroset_shade::{march, occlusion, pattern, sampling, secondary, shadow, skin, surface, view};
 
 /// The value of a constant.
 enum Value {
@@ -41,6 +41,7 @@ fn constants() -> Vec<(&'static str, Value)> {
         ("MIDDLE", Whole(march::MIDDLE)),
         ("SETTLED", Number(march::SETTLED)),
         ("MARKS_BEHIND", Number(march::MARKS_BEHIND)),
+        ("INSIDE_MARKS", Number(INSIDE_MARKS)),
         ("SKIN_BEHIND", Number(skin::BEHIND)),
         // the prepass
         ("CONE_NEAR", Number(march::CONE_NEAR)),
@@ -81,6 +82,8 @@ fn constants() -> Vec<(&'static str, Value)> {
         ("PCG_SUMMAND", Whole(sampling::PCG[1])),
         ("HIT_SEEDS", Whole(sampling::HIT_SEEDS)),
         ("UNIT", Number(sampling::UNIT)),
+        // rays that go on
+        ("FAINTEST", Number(surface::FAINTEST)),
         // patterns
         ("LEAST_WEIGHT", Number(pattern::LEAST_WEIGHT)),
     ]

@@ -173,31 +173,53 @@ formulas! {
         // the sky itself does not depend on how much of it arrives
         sky::colour(&SkyColours { top, horizon, bottom, ambient: y }, y);
     fn towards_point(place: Vec3, point: Vec3) = light::towards_point(place, point);
-    fn light_response@Phong(to: Vec3, distance: Number, kind: Number, normal: Vec3, direction: Vec3, shininess: Number) =
-        response(Shading::Phong, (to, distance), kind, normal, direction, shininess);
-    fn light_response@Lambert(to: Vec3, distance: Number, kind: Number, normal: Vec3, direction: Vec3, shininess: Number) =
-        response(Shading::Lambert, (to, distance), kind, normal, direction, shininess);
+    fn light_response@Physical(to: Vec3, distance: Number, kind: Number, normal: Vec3, direction: Vec3, finish: Number) =
+        response(Shading::Physical, (to, distance), kind, normal, direction, finish);
+    fn light_response@Phong(to: Vec3, distance: Number, kind: Number, normal: Vec3, direction: Vec3, finish: Number) =
+        response(Shading::Phong, (to, distance), kind, normal, direction, finish);
+    fn light_response@Lambert(to: Vec3, distance: Number, kind: Number, normal: Vec3, direction: Vec3, finish: Number) =
+        response(Shading::Lambert, (to, distance), kind, normal, direction, finish);
     fn light_response@LambertLegacy(
-        to: Vec3, distance: Number, kind: Number, normal: Vec3, direction: Vec3, shininess: Number
-    ) = response(Shading::LambertLegacy, (to, distance), kind, normal, direction, shininess);
+        to: Vec3, distance: Number, kind: Number, normal: Vec3, direction: Vec3, finish: Number
+    ) = response(Shading::LambertLegacy, (to, distance), kind, normal, direction, finish);
+    fn surface_colour@Physical(
+        albedo: Vec3, emission: Vec3, finish: Vec4, diffuse: Vec3, gloss: Vec3, grazing: Vec3, open: Number, bent: Vec3,
+        normal: Vec3, direction: Vec3, horizon: Vec3, top: Vec3, bottom: Vec3, ambient: Number, followed: Number
+    ) = surface::colour(
+        Shading::Physical,
+        &SkyColours { top, horizon, bottom, ambient },
+        &material(albedo, emission, finish),
+        &Lighting { diffuse, gloss, grazing, open, bent, normal, direction },
+        followed,
+    );
     fn surface_colour@Phong(
-        albedo: Vec3, emission: Vec3, specular: Number, metallic: Number, roughness: Number, diffuse: Vec3, gloss: Vec3,
-        open: Number, bent: Vec3, normal: Vec3, direction: Vec3, horizon: Vec3, top: Vec3, bottom: Vec3, ambient: Number
+        albedo: Vec3, emission: Vec3, finish: Vec4, diffuse: Vec3, gloss: Vec3, grazing: Vec3, open: Number, bent: Vec3,
+        normal: Vec3, direction: Vec3, horizon: Vec3, top: Vec3, bottom: Vec3, ambient: Number, followed: Number
     ) = surface::colour(
         Shading::Phong,
         &SkyColours { top, horizon, bottom, ambient },
-        &LocalMaterial { albedo, emission, specular, metallic, roughness },
-        &Lighting { diffuse, gloss, open, bent, normal, direction },
+        &material(albedo, emission, finish),
+        &Lighting { diffuse, gloss, grazing, open, bent, normal, direction },
+        followed,
     );
     fn surface_colour@Lambert(
-        albedo: Vec3, emission: Vec3, specular: Number, metallic: Number, roughness: Number, diffuse: Vec3, gloss: Vec3,
-        open: Number, bent: Vec3, normal: Vec3, direction: Vec3, horizon: Vec3, top: Vec3, bottom: Vec3, ambient: Number
+        albedo: Vec3, emission: Vec3, finish: Vec4, diffuse: Vec3, gloss: Vec3, grazing: Vec3, open: Number, bent: Vec3,
+        normal: Vec3, direction: Vec3, horizon: Vec3, top: Vec3, bottom: Vec3, ambient: Number, followed: Number
     ) = surface::colour(
         Shading::Lambert,
         &SkyColours { top, horizon, bottom, ambient },
-        &LocalMaterial { albedo, emission, specular, metallic, roughness },
-        &Lighting { diffuse, gloss, open, bent, normal, direction },
+        &material(albedo, emission, finish),
+        &Lighting { diffuse, gloss, grazing, open, bent, normal, direction },
+        followed,
     );
+    fn mirror_reflectance(albedo: Vec3, finish: Vec4, cosine: Number) =
+        surface::mirrored(&material(albedo, albedo, finish), cosine).all;
+    fn followed_share(roughness: Number) = surface::followed_share(roughness);
+    fn border(direction: Vec3, normal: Vec3, ior: Number) = {
+        let border = surface::refraction(direction, normal, ior);
+        (border.direction, border.reflected)
+    };
+    fn transmittance(attenuation: Vec3, t: Number) = surface::transmittance(attenuation, t);
 
     // shadows
     fn soft_shadow(f: Number, t: Number, sharpness: Number) = shadow::soft(f, t, sharpness);
@@ -245,20 +267,38 @@ fn place<'r>(
     }
 }
 
-/// A light's share by the cosine law, that in the highlight, and what distance leaves of it. `kind` is 0 where the light has no
-/// place.
+/// A material from its numbers: specular, metallic, roughness, transmission.
+fn material<'r>(
+    albedo: Vec3<Expr<'r>>,
+    emission: Vec3<Expr<'r>>,
+    [specular, metallic, roughness, transmission]: [Expr<'r>; 4],
+) -> LocalMaterial<Expr<'r>> {
+    LocalMaterial {
+        albedo,
+        emission,
+        specular,
+        metallic,
+        roughness,
+        transmission,
+        // the answer to lights has it already
+        shininess: roughness,
+    }
+}
+
+/// A light's share by the cosine law, that in the highlight, the part of it that the rise of Fresnel's law weighs, and what distance
+/// leaves of it. `kind` is 0 where the light has no place.
 fn response<'r>(
     shading: Shading,
     to: (Vec3<Expr<'r>>, Expr<'r>),
     kind: Expr<'r>,
     normal: Vec3<Expr<'r>>,
     direction: Vec3<Expr<'r>>,
-    shininess: Expr<'r>,
-) -> [Expr<'r>; 3] {
-    let [near, far] = [true, false]
-        .map(|point| light::response(shading, point, to, normal, direction, shininess));
+    finish: Expr<'r>,
+) -> [Expr<'r>; 4] {
+    let [near, far] =
+        [true, false].map(|point| light::response(shading, point, to, normal, direction, finish));
     let falloff = Expr::choose(kind.above(0.5), near.falloff, far.falloff);
-    [near.diffuse, near.gloss, falloff]
+    [near.diffuse, near.gloss, near.grazing, falloff]
 }
 
 #[cfg(test)]

@@ -17,7 +17,9 @@ use zeroset_scene::light::Source as LightSource;
 use zeroset_scene::material::{self, Image, Pattern};
 use zeroset_scene::render::RenderError;
 use zeroset_scene::scene::Scene;
-use zeroset_scene::settings::{Antialias, Filter, March, Occlusion, Shadow};
+use zeroset_scene::settings::{
+    Antialias, Filter, Integrator, March, Occlusion, Settings, Shading, Shadow,
+};
 use zeroset_shade::light::luminance;
 use zeroset_shade::skin::has_skins;
 use zeroset_shade::view::{Region, View};
@@ -277,6 +279,7 @@ impl Frame {
 fn frame(scene: &Scene, region: &Region) -> Frame {
     let settings = scene.settings();
     let sky = scene.sky();
+    let [reflections, refractions] = bounces(settings).unwrap_or_default();
     let frame = Frame {
         region_min: region.min,
         region_max: region.max,
@@ -291,6 +294,8 @@ fn frame(scene: &Scene, region: &Region) -> Frame {
             March::Auto { beta } => beta,
         },
         placing: settings.discontinuity_reduction,
+        reflections,
+        refractions,
         seed: settings.seed,
         sky_top: sky.top.to_array(),
         ambient: sky.ambient,
@@ -301,6 +306,20 @@ fn frame(scene: &Scene, region: &Region) -> Frame {
         ..Frame::default()
     };
     seen(frame, scene.camera(), settings.size, settings.antialias)
+}
+
+/// How often rays are reflected, and how often they pass or meet from inside the surface of a clear body; none where rays do not go on.
+pub(crate) fn bounces(settings: &Settings) -> Option<[u32; 2]> {
+    match (settings.shading, settings.integrator) {
+        (
+            Shading::Physical,
+            Integrator::Whitted {
+                reflections,
+                refractions,
+            },
+        ) => Some([reflections, refractions]),
+        (_, Integrator::Whitted { .. } | Integrator::Direct) => None,
+    }
 }
 
 /// A frame as a camera sees it.
@@ -375,11 +394,12 @@ fn tables(
     let places: HashMap<*const Image, u64> = (images.iter().map(Arc::as_ptr))
         .zip(texture::starts(images))
         .collect();
+    let clear = bounces(scene.settings()).is_some();
     for material in scene.materials().iter().chain([&fallback]) {
         let place = image(&material.pattern).and_then(|image| places.get(&Arc::as_ptr(image)));
         push(
             &mut table,
-            material_row(material, place.copied().unwrap_or(0)),
+            material_row(material, place.copied().unwrap_or(0), clear),
         );
     }
     frame.grid_rows = table.len() as u32;
@@ -457,8 +477,8 @@ fn occluder(method: Occlusion) -> Occluder {
     }
 }
 
-/// `image`: the first texel of its image.
-fn material_row(material: &material::Material, image: u64) -> Material {
+/// `image`: the first texel of its image. `clear`: whether rays go through clear bodies; else these are shown as if they were none.
+fn material_row(material: &material::Material, image: u64, clear: bool) -> Material {
     let zero = [0.0; 3];
     let [image_row, image_column] = texture::place(image);
     let mut row = Material {
@@ -467,6 +487,9 @@ fn material_row(material: &material::Material, image: u64) -> Material {
         shininess: material.shininess,
         metallic: material.metallic,
         roughness: material.roughness,
+        transmission: if clear { material.transmission } else { 0.0 },
+        ior: material.ior,
+        attenuation: material.attenuation.to_array(),
         emission: material.emission.to_array(),
         image_row,
         image_column,

@@ -159,8 +159,16 @@ shared! {
         first_ray: u32,
         /// First row of the grids.
         grid_rows: u32,
+        /// How often a ray is reflected.
+        reflections: u32,
+        /// How often a ray passes the surface of a clear body, or is reflected within it.
+        refractions: u32,
         /// Not used.
-        pad: u32,
+        pad_a: u32,
+        /// Not used.
+        pad_b: u32,
+        /// Not used.
+        pad_c: u32,
     }
 
     /// What one dispatch covers.
@@ -253,10 +261,14 @@ shared! {
         height: f32,
         /// Column of its first texel.
         image_column: f32,
+        /// 0 opaque, 1 glass.
+        transmission: f32,
+        /// Index of refraction.
+        ior: f32,
+        /// What light loses inside over a scene unit.
+        attenuation: [f32; 3],
         /// Not used.
-        pad_a: f32,
-        /// Not used.
-        pad_b: f32,
+        pad: f32,
     }
 
     /// A grid of samples, as a row of the table.

@@ -4,7 +4,7 @@ use crate::constants;
 use crate::entry::{Binding, UNIFORM_NUMBERS, UNIFORM_ROWS};
 use crate::field::FieldSource;
 use crate::formulas;
-use crate::job::{FieldForm, LONGEST_COMPILED};
+use crate::job::{FieldForm, LONGEST_COMPILED, bounces};
 use crate::layout::{
     Frame, Grid, Light, LightSum, Material, Occluder, Sample, Shared, SurfaceSum, Tile, loader,
     rows,
@@ -47,6 +47,8 @@ pub(crate) struct Key {
     march: &'static [Stage],
     normals: &'static [Stage],
     shading: Shading,
+    /// Rays that may wait to be followed: as many as go on one after the other, and one more.
+    waiting: u32,
     occlusion: BTreeSet<Case>,
     /// Whether any light casts a shadow.
     shadows: bool,
@@ -145,6 +147,7 @@ impl Key {
             march: marcher(&scene.settings().march),
             normals: normals(scene.settings().normals),
             shading: scene.settings().shading,
+            waiting: bounces(scene.settings()).map_or(1, |[a, b]| a + b + 1),
             occlusion: methods.filter_map(occlusion).collect(),
             shadows: scene.lights().iter().any(|l| casts(&l.shadow)),
             patterns: (scene.materials().iter())
@@ -278,7 +281,8 @@ impl Key {
             text += &grids();
         }
         text += &constants::declarations();
-        text += &field.text;
+        text += MARCH_SIDE;
+        text += &self.sided(&field.text);
         for name in self.formulas() {
             text.push('\n');
             text += formulas::text(name);
@@ -286,6 +290,12 @@ impl Key {
         for stage in self.stages() {
             text.push('\n');
             text += stage;
+        }
+        // writing to a string cannot fail
+        let _ = writeln!(text, "const WAITING: u32 = {}u;", self.waiting);
+        text += finish(self.shading);
+        if !self.in_turns {
+            text += NEVER;
         }
         text += &self.pattern_colour();
         text += &self.occlusion();
@@ -298,6 +308,20 @@ impl Key {
             code: field.code,
             registers: field.registers,
         }
+    }
+
+    /// The text of a field whose parameters that tell sides are those of the ray.
+    fn sided(&self, field: &str) -> String {
+        let sides = &self.structure.sides;
+        if sides.is_empty() {
+            return field.to_owned();
+        }
+        let tests: Vec<String> = sides.iter().map(|side| format!("i == {side}u")).collect();
+        calls(field, "params[", "sided_param(")
+            + &format!(
+                "\nfn sided_param(i: u32) -> f32 {{\n    return select(params[i], march_side, {});\n}}\n",
+                tests.join(" || ")
+            )
     }
 
     /// The stages that the methods of this scene need.
@@ -342,6 +366,7 @@ impl Key {
     fn formulas(&self) -> BTreeSet<&'static str> {
         let mut names = BTreeSet::from(EVERYWHERE);
         names.extend(match self.shading {
+            Shading::Physical => ["light_response@Physical", "surface_colour@Physical"],
             Shading::Phong => ["light_response@Phong", "surface_colour@Phong"],
             Shading::Lambert => ["light_response@Lambert", "surface_colour@Lambert"],
             // the surface answers alike
@@ -418,6 +443,31 @@ fn param_at(i: u32) -> f32 {
 }
 ";
 
+/// What parameters are that tell sides, see `Structure::sides`.
+const MARCH_SIDE: &str = "
+/// 1 for rays outside all bodies, below 0 inside clear ones.
+var<private> march_side: f32 = 1.0;
+";
+
+/// Rays that are not traced in turns are traced to their end.
+const NEVER: &str = "
+fn gives_up() -> bool {
+    return false;
+}
+";
+
+/// How smooth a surface is for a light model.
+fn finish(shading: Shading) -> &'static str {
+    match shading {
+        Shading::Phong => {
+            "fn light_finish(what: LocalMaterial) -> f32 {\n    return what.shininess;\n}\n"
+        }
+        Shading::Physical | Shading::Lambert | Shading::LambertLegacy => {
+            "fn light_finish(what: LocalMaterial) -> f32 {\n    return what.finish.z;\n}\n"
+        }
+    }
+}
+
 /// A row of the table, from the uniform buffer.
 const ROW: &str = "
 fn table_at(i: u32) -> vec4f {
@@ -445,7 +495,7 @@ fn switch<'a>(
 }
 
 /// Formulas that every picture needs.
-const EVERYWHERE: [&str; 19] = [
+const EVERYWHERE: [&str; 23] = [
     "false_position",
     "on_plane",
     "pinhole_ray",
@@ -465,6 +515,10 @@ const EVERYWHERE: [&str; 19] = [
     "footprint_on",
     "sky_colour",
     "towards_point",
+    "mirror_reflectance",
+    "followed_share",
+    "border",
+    "transmittance",
 ];
 
 /// Those of `stage/secondary.wgsl`.

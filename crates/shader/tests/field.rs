@@ -190,6 +190,7 @@ fn structure(values: Vec<Instruction>, marks: Vec<Instruction>) -> Structure {
     Structure {
         values: code(values),
         marks: code(marks),
+        sides: Vec::new(),
     }
 }
 

@@ -338,9 +338,41 @@ camera(eye = (3, 1.2, 0), target = (0, 0.5, 0), fov = 40)
     scene
 }
 
+/// The height of a normal whose surface gets this share of the light of the sky of [`wall`], which is `1.1225 y^2 / (y^2 + 0.1225)` at the
+/// height y above the horizon: found by halving, the share by summing up over the hemisphere by the cosine law.
+fn height_of(share: f32) -> f32 {
+    let share_of = |height: f64| {
+        let (mut sum, mut all) = (0.0, 0.0);
+        for i in 0..100 {
+            let y = (f64::from(i) + 0.5) / 50.0 - 1.0;
+            for k in 0..100 {
+                let phi = (f64::from(k) + 0.5) / 100.0 * std::f64::consts::TAU;
+                let r = (1.0 - y * y).sqrt();
+                let cosine = ((1.0 - height * height).sqrt() * r * phi.cos() + height * y).max(0.0);
+                sum += if y > 0.0 {
+                    cosine * 1.1225 * y * y / (y * y + 0.1225)
+                } else {
+                    0.0
+                };
+                all += cosine;
+            }
+        }
+        sum / all
+    };
+    let (mut low, mut high) = (-1.0, 1.0);
+    for _ in 0..20 {
+        let middle = 0.5 * (low + high);
+        if share_of(middle) < f64::from(share) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low as f32
+}
+
 /// At the foot of a wall a quarter of all directions is open. Weighted by the cosine to the wall's normal x, the mean of them
-/// has the direction (integral of x x, integral of x y) = (pi / 3, 2 / 3): its height is 0.537, where the normal's is 0. The
-/// sky of [`wall`] gives (1 + height) / 4 of its light there.
+/// has the direction (integral of x x, integral of x y) = (pi / 3, 2 / 3): its height is 0.537, where the normal's is 0.
 #[test]
 fn the_light_at_the_foot_of_a_wall_comes_from_the_open_side() {
     let scene = wall();
@@ -351,7 +383,7 @@ fn the_light_at_the_foot_of_a_wall_comes_from_the_open_side() {
         let at = |plane: Plane, i: usize| film.plane(plane)[plane.channels() * i];
         foot.filter(|i| at(Plane::Object, *i) == 1.0)
             .map(|i| {
-                4.0 * at(Plane::Colour, i) / (at(Plane::Albedo, i) * at(Plane::Occlusion, i)) - 1.0
+                height_of(at(Plane::Colour, i) / (at(Plane::Albedo, i) * at(Plane::Occlusion, i)))
             })
             .collect()
     };

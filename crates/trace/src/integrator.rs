@@ -4,18 +4,24 @@ use crate::ao;
 use crate::job::Job;
 use crate::march::ORDINAL;
 use crate::order::{self, Sorting};
+use crate::paths::{PathRay, PathState};
+use crate::ray::WideRay;
 use crate::shadow::shadows;
-use crate::simd::{INSIDE, load, load3, splat, store, store3};
+use crate::simd::{INSIDE, load, load_words, load3, splat, store, store3};
+use crate::surface::materials;
 use crate::tile::{Area, Hits, Scratch, Solid};
 use fearless_simd::{Simd, prelude::*};
-use zeroset_number::Ops;
+use zeroset_number::lanes::LaneMask;
+use zeroset_number::{Lanes, Ops, Real, v3};
 use zeroset_scene::film::Plane;
 use zeroset_scene::settings::{Occlusion, Shading};
 use zeroset_shade::light::{arrival, towards};
-use zeroset_shade::pattern::Place;
+use zeroset_shade::parameters;
 use zeroset_shade::sampling::{hit_seed, scramble};
 use zeroset_shade::sky::SkyColours;
-use zeroset_shade::surface::{Lighting, colour};
+use zeroset_shade::surface::{
+    FAINTEST, Lighting, colour, followed_share, mirrored, refraction, transmittance,
+};
 
 /// A sample of the pixels of a tile.
 #[derive(Clone, Copy)]
@@ -29,24 +35,158 @@ pub(crate) struct TileSample<'a> {
 
 /// A way to find the light that comes back along rays.
 ///
-/// It is given the hits of a sample's primary rays, with all that is known of their surfaces, and may follow other rays from there
-/// ([`crate::closest::closest`], [`crate::secondary`]).
+/// It is given the hits of the rays of a queue, from the eye or onward, with all that is known of their surfaces, and may send other
+/// rays on from there.
 pub(crate) trait Integrator {
     /// Finds the light that comes back along the rays of `q.hits`, into their `colour`; beside it what the planes show of light:
-    /// `open`, `shadow`, `albedo`.
+    /// `open`, `shadow`, and the albedo of `material`. What other rays bring goes into `q.paths`.
     fn integrate<S: Simd>(&self, s: S, sample: &TileSample<'_>, q: &mut Scratch);
 }
 
 /// Light that comes from lights and the sky and is reflected once, as a method says that it does; the sky's through what an occlusion
-/// method leaves open.
+/// method leaves open. Clear bodies are shown as if they were none.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Direct;
 
 impl Integrator for Direct {
     fn integrate<S: Simd>(&self, s: S, sample: &TileSample<'_>, q: &mut Scratch) {
         occlude(s, sample, q);
+        materials(s, sample.job, sample.solid, &mut q.hits);
+        q.hits.material.make_opaque(q.hits.count);
+        q.hits.followed[..q.hits.count].fill(0.0);
         light(s, sample, q);
         shade(s, sample, q);
+    }
+}
+
+/// As [`Direct`], and on: smooth surfaces reflect what rays find there, clear bodies let rays through (Whitted 1980; Keinert et al. 2014,
+/// section 4).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Whitted {
+    pub(crate) reflections: u32,
+    pub(crate) refractions: u32,
+}
+
+impl Integrator for Whitted {
+    fn integrate<S: Simd>(&self, s: S, sample: &TileSample<'_>, q: &mut Scratch) {
+        occlude(s, sample, q);
+        materials(s, sample.job, sample.solid, &mut q.hits);
+        if sample.job.picture.scene.settings().shading != Shading::Physical {
+            q.hits.material.make_opaque(q.hits.count);
+            q.hits.followed[..q.hits.count].fill(0.0);
+            light(s, sample, q);
+            shade(s, sample, q);
+            return;
+        }
+        for i in 0..q.hits.count {
+            q.hits.followed[i] = self.go_on(sample, q, i);
+        }
+        light(s, sample, q);
+        shade(s, sample, q);
+        for i in 0..q.hits.count {
+            lose(sample, q, i);
+        }
+    }
+}
+
+impl Whitted {
+    /// Sends rays on from hit number `i`. Gives the share of its reflection that they follow.
+    fn go_on(&self, sample: &TileSample<'_>, q: &mut Scratch, i: usize) -> f32 {
+        let (hits, number) = (&q.hits, (q.hits.word[i] & ORDINAL) as usize);
+        let inside = hits.word[i] & INSIDE != 0;
+        let what = hits.material.get(i);
+        let clear = what.transmission * (1.0 - what.metallic);
+        let smooth = followed_share(what.roughness);
+        if clear <= 0.0 && (inside || smooth <= 0.0) {
+            return 0.0;
+        }
+        let state = q.paths.state(number);
+        let ray = hits.rays.get(&hits.common, i);
+        let (d, n) = (ray.direction, hits.normal(i));
+        let cosine = (-n.dot(d)).clamp(0.0, 1.0);
+        let body = sample.job.material(state.medium.unwrap_or(hits.first[i]));
+        let weight = match inside {
+            true => (state.weight).times(transmittance(parameters(body.attenuation), hits.t[i])),
+            false => state.weight,
+        };
+        let next = WideRay {
+            travelled: ray.way(hits.t[i]),
+            ..ray
+        };
+        let mut onward = |direction, side: f32, state: PathState| {
+            let bright = state.weight.max_component() >= FAINTEST;
+            if bright {
+                let origin = hits.point(i) + n * (hits.offset[i] * side);
+                let ray = WideRay {
+                    origin,
+                    direction,
+                    ..next
+                };
+                q.paths.push(PathRay { ray, state });
+            }
+            bright
+        };
+        let mirror = d + n * (2.0 * cosine);
+        // what clear bodies reflect, and what goes on behind their surface
+        let mut reflected = mirrored(&what, cosine).all * (smooth * (1.0 - clear));
+        if inside {
+            reflected = reflected * 0.0;
+        }
+        let (mut reflections, mut refractions) = (state.reflections, state.refractions);
+        if inside {
+            refractions += 1;
+        } else {
+            reflections += 1;
+        }
+        if clear > 0.0 {
+            let ior = if inside { 1.0 / body.ior } else { body.ior };
+            let border = refraction(d, n, ior);
+            reflected = reflected + v3(1.0, 1.0, 1.0) * (clear * border.reflected);
+            let through = clear * (1.0 - border.reflected);
+            let colour = if inside {
+                v3(1.0, 1.0, 1.0)
+            } else {
+                what.albedo
+            };
+            if state.refractions < self.refractions {
+                let state = PathState {
+                    weight: weight.times(colour) * through,
+                    refractions: state.refractions + 1,
+                    medium: (!inside).then_some(hits.first[i]),
+                    ..state
+                };
+                onward(border.direction, -1.0, state);
+            }
+        }
+        let allowed = reflections <= self.reflections && refractions <= self.refractions;
+        let state = PathState {
+            weight: weight.times(reflected),
+            reflections,
+            refractions,
+            medium: inside.then_some(state.medium.unwrap_or(hits.first[i])),
+            ..state
+        };
+        // of clear bodies nothing is left to the blurred sky
+        if allowed && onward(mirror, 1.0, state) {
+            smooth + (1.0 - smooth) * clear
+        } else {
+            clear
+        }
+    }
+}
+
+/// What light loses inside a clear body, on the way from hit number `i` back to where its ray began.
+fn lose(sample: &TileSample<'_>, q: &mut Scratch, i: usize) {
+    let hits = &mut q.hits;
+    let state = q.paths.state((hits.word[i] & ORDINAL) as usize);
+    let clear = hits.material.get(i).transmission > 0.0;
+    if hits.word[i] & INSIDE == 0 || (state.medium.is_none() && !clear) {
+        return;
+    }
+    let body = sample.job.material(state.medium.unwrap_or(hits.first[i]));
+    let left = transmittance(parameters(body.attenuation), hits.t[i]).array();
+    for (column, left) in hits.colour.iter_mut().zip(left) {
+        column[i] *= left;
     }
 }
 
@@ -67,7 +207,7 @@ fn occlude<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
     if methods.iter().any(random) {
         let seed = picture.scene.settings().seed;
         for i in 0..q.hits.count {
-            let pixel = (q.hits.word[i] & ORDINAL) as usize;
+            let pixel = q.paths.pixel((q.hits.word[i] & ORDINAL) as usize);
             let (x, y) = (
                 area.x as u32 + order::X[pixel] as u32,
                 area.y as u32 + order::Y[pixel] as u32,
@@ -112,6 +252,7 @@ fn light<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
     let (count, shading) = (q.hits.count, job.picture.scene.settings().shading);
     let columns = q.hits.diffuse.iter_mut().chain(&mut q.hits.gloss);
     columns
+        .chain(&mut q.hits.grazing)
         .chain([&mut q.hits.shadow, &mut q.hits.shares])
         .for_each(|c| c[..count].fill(0.0));
     for light in job.picture.scene.lights() {
@@ -119,8 +260,6 @@ fn light<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
             break;
         }
         shadows(s, solid, light, q);
-        let only = job.picture.material;
-        let only = only.map(|m| job.material(f32::from(m)).shininess);
         s.vectorize(
             #[inline(always)]
             || {
@@ -129,10 +268,7 @@ fn light<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
                     let lit = load(s, &q.lit, i);
                     let d = hits.ray(s, i).direction;
                     let to = towards(&light.source, load3(s, &hits.point, i));
-                    let shininess = match (shading, only) {
-                        (Shading::Phong, None) => job.shininess(s, hits, i),
-                        (_, shininess) => splat(s, shininess.unwrap_or(1.0)),
-                    };
+                    let finish = hits.material.finish(s, shading, i);
                     let got = arrival(
                         shading,
                         light,
@@ -140,11 +276,15 @@ fn light<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
                         load3(s, &hits.normal, i),
                         d,
                         lit,
-                        shininess,
+                        finish,
                     );
                     let (diffuse, gloss) = (load3(s, &hits.diffuse, i), load3(s, &hits.gloss, i));
                     store3(diffuse + got.diffuse, &mut hits.diffuse, i);
                     store3(gloss + got.gloss, &mut hits.gloss, i);
+                    if matches!(shading, Shading::Physical) {
+                        let grazing = load3(s, &hits.grazing, i);
+                        store3(grazing + got.grazing, &mut hits.grazing, i);
+                    }
                     if job.wants(Plane::Shadow) {
                         store(
                             load(s, &hits.shadow, i) + got.share * lit,
@@ -161,43 +301,31 @@ fn light<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
 
 /// Puts the colours of all hits together.
 fn shade<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
-    let (job, solid) = (sample.job, sample.solid);
+    let job = sample.job;
     s.vectorize(
         #[inline(always)]
         || {
             let (scene, hits) = (&job.picture.scene, &mut q.hits);
             let sky = SkyColours::of(scene.sky());
-            // with more rays a pixel each stands for less of it
-            let finer = 1.0 / (job.samples() as f32).sqrt();
             for i in (0..hits.count).step_by(S::f32s::LEN) {
-                let ray = hits.ray(s, i);
-                let d = ray.direction;
-                let n = load3(s, &hits.normal, i);
-                let pixel = solid.width(&ray, load(s, &hits.t, i)) * finer;
-                let mut place = Place::new(load3(s, &hits.point, i), n, d, pixel);
-                if job.picture.has_orbits {
-                    let o = &hits.orbit;
-                    place = place.with_orbit([
-                        load(s, &o[0], i),
-                        load(s, &o[1], i),
-                        load(s, &o[2], i),
-                        load(s, &o[3], i),
-                    ]);
-                }
-                let what = job.local_material(s, hits, i, &place);
+                let what = hits.material.load(s, i);
+                // lights do not shine on the inner side of a clear body
+                let side = load_words(s, &hits.word, i) & INSIDE;
+                let inside = LaneMask(side.simd_gt(S::u32s::splat(s, 0)));
+                let one = splat(s, 1.0);
+                let shone = Lanes::select(inside, what.transmission.one_minus(), one);
                 let light = Lighting {
                     diffuse: load3(s, &hits.diffuse, i),
-                    gloss: load3(s, &hits.gloss, i),
+                    gloss: load3(s, &hits.gloss, i) * shone,
+                    grazing: load3(s, &hits.grazing, i) * shone,
                     open: load(s, &hits.open, i),
                     bent: load3(s, &hits.bent, i),
-                    normal: n,
-                    direction: d,
+                    normal: load3(s, &hits.normal, i),
+                    direction: hits.ray(s, i).direction,
                 };
-                let c = colour(scene.settings().shading, &sky, &what, &light);
+                let followed = load(s, &hits.followed, i);
+                let c = colour(scene.settings().shading, &sky, &what, &light, followed);
                 store3(c, &mut hits.colour, i);
-                if job.wants(Plane::Albedo) {
-                    store3(what.albedo, &mut hits.albedo, i);
-                }
                 if job.wants(Plane::Shadow) {
                     let (lit, all) = (load(s, &hits.shadow, i), load(s, &hits.shares, i));
                     store(lit / all.max(1e-20), &mut hits.shadow, i);

@@ -1,10 +1,11 @@
 //! What is done for a tile: the stages, sample by sample.
 
 use crate::closest::{Plan, closest};
-use crate::integrator::{Direct, Integrator, TileSample};
+use crate::integrator::{Direct, Integrator, TileSample, Whitted};
 use crate::march::ORDINAL;
 use crate::normal::{normals, place};
 use crate::order::{self, PLACE};
+use crate::paths::PathRay;
 use crate::renderer::{Done, PreparedScene};
 use crate::simd::{splat, store, store3};
 use crate::stop::Stop;
@@ -13,12 +14,12 @@ use crate::tile::{Area, HEIGHT, Scratch, Solid, WIDTH};
 use crate::{cone, primary, resolve};
 use fearless_simd::{Simd, prelude::*};
 use std::ops::Range;
-use zeroset_number::Lanes;
+use zeroset_number::{Lanes, Vec3, v3};
 use zeroset_scene::accumulator::{Accumulator, Sum};
 use zeroset_scene::camera::Camera;
 use zeroset_scene::film::Plane;
 use zeroset_scene::material::Material;
-use zeroset_scene::settings::Filter;
+use zeroset_scene::settings::{self, Filter};
 use zeroset_shade::sampling::{point, scramble};
 use zeroset_shade::sky::{SkyColours, colour};
 use zeroset_shade::view::View;
@@ -112,13 +113,11 @@ impl<'a> Job<'a> {
                 break;
             }
             self.aim(area, index, q);
-            self.trace(s, &solid, area, index, q);
+            hits += self.trace(s, &solid, area, index, q);
             if stop.is_set() {
                 // what was found is not all: it must not reach the pixels of the tiles around
                 break;
             }
-            hits += q.hits.count as u64;
-            self.gather(s, area, q);
             if let Some((_, filter)) = self.samples {
                 resolve::splat_samples(s, filter, area, &q.planes, sums);
             }
@@ -153,8 +152,15 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Finds what the rays hit and the light that comes from there.
-    fn trace<S: Simd>(&self, s: S, solid: &Solid<'_>, area: &Area, index: u32, q: &mut Scratch) {
+    /// Finds what the rays hit and the light that comes from there. Gives the number of hits.
+    fn trace<S: Simd>(
+        &self,
+        s: S,
+        solid: &Solid<'_>,
+        area: &Area,
+        index: u32,
+        q: &mut Scratch,
+    ) -> u64 {
         let settings = self.picture.scene.settings();
         if index == self.taken.start {
             let reach = if self.samples.is_some() { 0.5 } else { 0.0 };
@@ -173,27 +179,102 @@ impl<'a> Job<'a> {
         primary::aim(s, solid.view, area, &q.jitter, &mut q.queue);
         let (queue, memory) = q.split();
         q.counts.march += closest(s, &self.plan, solid, queue, memory);
-        self.surfaces(s, solid, q);
+        self.surfaces(s, solid, self.wants(Plane::Residual), q);
+        self.identify(s, solid, q);
         let sample = TileSample {
             job: self,
             solid,
             area,
             index,
         };
-        Direct.integrate(s, &sample, q);
+        let hits = q.hits.count as u64;
+        match settings.integrator {
+            settings::Integrator::Direct => self.light(s, &Direct, &sample, q),
+            settings::Integrator::Whitted {
+                reflections,
+                refractions,
+            } => {
+                let whitted = Whitted {
+                    reflections,
+                    refractions,
+                };
+                self.light(s, &whitted, &sample, q);
+            }
+        }
+        hits
     }
 
-    /// Finds what is known of the hits at hand without any light: places, normals, objects and materials.
-    fn surfaces<S: Simd>(&self, s: S, solid: &Solid<'_>, q: &mut Scratch) {
-        let settings = self.picture.scene.settings();
-        place(
-            s,
-            solid,
-            settings.discontinuity_reduction,
-            self.wants(Plane::Residual),
-            q,
+    /// Finds the light that comes back along the rays of a sample, from the hits at hand and by all rays that go on from there, and
+    /// puts it in the pixels.
+    fn light<S: Simd>(
+        &self,
+        s: S,
+        integrator: &impl Integrator,
+        sample: &TileSample<'_>,
+        q: &mut Scratch,
+    ) {
+        let (solid, plan) = (
+            sample.solid,
+            Plan {
+                steps: false,
+                ..self.plan
+            },
         );
+        q.paths.begin();
+        integrator.integrate(s, sample, q);
+        self.gather(s, sample.area, q);
+        // the spans of the rays from the eye are those of the next sample too
+        std::mem::swap(&mut q.queue.spans, &mut q.next);
+        let [within, marked] = [&self.picture.inside, &self.picture.inside_marks].map(|program| {
+            let program = program.as_ref()?;
+            Some(Solid { program, ..*solid })
+        });
+        while !solid.stop.is_set()
+            && let Some(inside) = q.paths.next(solid, &mut q.queue)
+        {
+            let marched = within.as_ref().filter(|_| inside).unwrap_or(solid);
+            let (queue, memory) = q.split();
+            q.counts.march += closest(s, &plan, marched, queue, memory);
+            self.surfaces(s, marched, false, q);
+            let marked = marked.as_ref().filter(|_| inside).unwrap_or(solid);
+            self.identify(s, marked, q);
+            integrator.integrate(s, sample, q);
+            self.add_onward(q);
+        }
+        std::mem::swap(&mut q.queue.spans, &mut q.next);
+    }
+
+    /// Adds the light that rays brought which went on, to the pixels that they come from.
+    fn add_onward(&self, q: &mut Scratch) {
+        let mut add = |pixel: usize, light: Vec3<f32>| {
+            let at = usize::from(PLACE[pixel]);
+            for (column, x) in q.planes.colour.iter_mut().zip(light.array()) {
+                column[at] += x;
+            }
+        };
+        for i in 0..q.hits.count {
+            let number = (q.hits.word[i] & ORDINAL) as usize;
+            q.paths.meets(number);
+            let [r, g, b] = &q.hits.colour;
+            let state = q.paths.state(number);
+            add(state.pixel, state.weight.times(v3(r[i], g[i], b[i])));
+        }
+        let sky = SkyColours::of(self.picture.scene.sky());
+        for PathRay { ray, state } in q.paths.missed() {
+            let seen = colour(&sky, ray.direction.y);
+            add(state.pixel, state.weight.times(seen));
+        }
+    }
+
+    /// Finds the places of the hits at hand, and their normals.
+    fn surfaces<S: Simd>(&self, s: S, solid: &Solid<'_>, residual: bool, q: &mut Scratch) {
+        let settings = self.picture.scene.settings();
+        place(s, solid, settings.discontinuity_reduction, residual, q);
         normals(s, solid, settings.normals, q);
+    }
+
+    /// Finds the objects and the materials of the hits at hand.
+    fn identify<S: Simd>(&self, s: S, solid: &Solid<'_>, q: &mut Scratch) {
         if self.marks {
             marks(s, solid, q);
             return;

@@ -39,6 +39,7 @@ mod march;
 mod marcher;
 mod normal;
 mod order;
+mod paths;
 mod planes;
 mod primary;
 mod query;

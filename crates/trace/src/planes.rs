@@ -69,7 +69,7 @@ impl Planes {
             self.hits[at] += 1.0;
             for k in 0..3 {
                 self.normal[k][at] += hits.normal[k][i];
-                self.albedo[k][at] += hits.albedo[k][i];
+                self.albedo[k][at] += hits.material.albedo[k][i];
             }
             self.occlusion[at] += hits.open[i];
             self.shadow[at] += hits.shadow[i];

@@ -132,6 +132,10 @@ pub struct PreparedScene {
     pub(crate) renderer: CpuRenderer,
     pub(crate) scene: Arc<Scene>,
     pub(crate) program: Program,
+    /// The same for rays inside clear bodies, where there are opaque ones too.
+    pub(crate) inside: Option<Program>,
+    /// See [`Program::inside_marks`].
+    pub(crate) inside_marks: Option<Program>,
     /// Where the solid is; empty where the scene has no objects.
     pub(crate) region: Region,
     /// Whether there are skins that its methods would see.
@@ -194,6 +198,8 @@ impl PreparedScene {
             renderer,
             skins: has_skins(&scene, &program),
             scene,
+            inside: program.inside(),
+            inside_marks: program.inside_marks(),
             program,
             region,
             material: only(&materials),

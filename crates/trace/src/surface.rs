@@ -1,12 +1,13 @@
 //! What the surface is at the hits: to which objects and materials they belong, and what these are made of there.
 
 use crate::job::Job;
-use crate::simd::{constant, load, splat, store};
+use crate::simd::{Sheet, constant, load, load3, splat, store, store3};
 use crate::tile::{Hits, Scratch, Solid};
 use fearless_simd::{Simd, prelude::*};
 use zeroset_eval::{BATCH, Lane};
-use zeroset_number::{Lanes, Ops, Real};
+use zeroset_number::{Lanes, Ops, Real, v3};
 use zeroset_scene::material::Material;
+use zeroset_scene::settings::Shading;
 use zeroset_shade::march::MARKS_BEHIND;
 use zeroset_shade::pattern::{Place, colour as pattern_colour};
 use zeroset_shade::surface::LocalMaterial;
@@ -25,26 +26,9 @@ impl Job<'_> {
             .unwrap_or(&self.fallback)
     }
 
-    #[inline(always)]
-    pub(crate) fn shininess<S: Simd>(&self, s: S, hits: &Hits, i: usize) -> Lanes<S> {
-        Lanes(S::f32s::from_fn(
-            s,
-            #[inline(always)]
-            |k| {
-                let (a, b) = (hits.first[i + k], hits.second[i + k]);
-                let (a, share) = (self.material(a).shininess, hits.share[i + k]);
-                if share > 0.0 {
-                    a + (self.material(b).shininess - a) * share
-                } else {
-                    a
-                }
-            },
-        ))
-    }
-
     /// What the surface is made of at the hits from `i` on: of each material that any of them has, as much as they have.
     #[inline(always)]
-    pub(crate) fn local_material<S: Simd>(
+    fn local_material<S: Simd>(
         &self,
         s: S,
         hits: &Hits,
@@ -94,6 +78,8 @@ impl Job<'_> {
                     specular: all.specular + part.specular,
                     metallic: all.metallic + part.metallic,
                     roughness: all.roughness + part.roughness,
+                    transmission: all.transmission + part.transmission,
+                    shininess: all.shininess + part.shininess,
                 },
             });
         }
@@ -113,7 +99,37 @@ fn whole<S: Simd>(m: &Material, at: &Place<Lanes<S>>, weight: Lanes<S>) -> Local
         specular: weight * m.specular,
         metallic: weight * m.metallic,
         roughness: weight * m.roughness,
+        transmission: weight * m.transmission,
+        shininess: weight * m.shininess,
     }
+}
+
+/// Finds what the surface is made of at the hits.
+pub(crate) fn materials<S: Simd>(s: S, job: &Job<'_>, solid: &Solid<'_>, hits: &mut Hits) {
+    s.vectorize(
+        #[inline(always)]
+        || {
+            // with more rays a pixel each stands for less of it
+            let finer = 1.0 / (job.samples() as f32).sqrt();
+            for i in (0..hits.count).step_by(S::f32s::LEN) {
+                let ray = hits.ray(s, i);
+                let pixel = solid.width(&ray, load(s, &hits.t, i)) * finer;
+                let (point, normal) = (load3(s, &hits.point, i), load3(s, &hits.normal, i));
+                let mut place = Place::new(point, normal, ray.direction, pixel);
+                if job.picture.has_orbits {
+                    let o = &hits.orbit;
+                    place = place.with_orbit([
+                        load(s, &o[0], i),
+                        load(s, &o[1], i),
+                        load(s, &o[2], i),
+                        load(s, &o[3], i),
+                    ]);
+                }
+                let what = job.local_material(s, hits, i, &place);
+                hits.material.store(&what, i);
+            }
+        },
+    );
 }
 
 /// Finds which objects and materials the hits belong to.
@@ -144,6 +160,86 @@ pub(crate) fn marks<S: Simd>(s: S, solid: &Solid<'_>, q: &mut Scratch) {
         q.hits.share[k..k + n].copy_from_slice(&marks.share.0[..n]);
         for (column, orbit) in q.hits.orbit.iter_mut().zip(&marks.orbit) {
             column[k..k + n].copy_from_slice(&orbit.0[..n]);
+        }
+    }
+}
+
+/// What the surface is made of at many hits, a column for each number.
+pub(crate) struct MaterialColumns {
+    pub(crate) albedo: [Box<Sheet>; 3],
+    emission: [Box<Sheet>; 3],
+    specular: Box<Sheet>,
+    metallic: Box<Sheet>,
+    roughness: Box<Sheet>,
+    transmission: Box<Sheet>,
+    shininess: Box<Sheet>,
+}
+
+impl MaterialColumns {
+    pub(crate) fn new() -> MaterialColumns {
+        let sheet3 = || [Sheet::boxed(), Sheet::boxed(), Sheet::boxed()];
+        MaterialColumns {
+            albedo: sheet3(),
+            emission: sheet3(),
+            specular: Sheet::boxed(),
+            metallic: Sheet::boxed(),
+            roughness: Sheet::boxed(),
+            transmission: Sheet::boxed(),
+            shininess: Sheet::boxed(),
+        }
+    }
+
+    #[inline(always)]
+    fn store<S: Simd>(&mut self, what: &LocalMaterial<Lanes<S>>, i: usize) {
+        store3(what.albedo, &mut self.albedo, i);
+        store3(what.emission, &mut self.emission, i);
+        store(what.specular, &mut self.specular, i);
+        store(what.metallic, &mut self.metallic, i);
+        store(what.roughness, &mut self.roughness, i);
+        store(what.transmission, &mut self.transmission, i);
+        store(what.shininess, &mut self.shininess, i);
+    }
+
+    /// What those from number `i` on are made of.
+    #[inline(always)]
+    pub(crate) fn load<S: Simd>(&self, s: S, i: usize) -> LocalMaterial<Lanes<S>> {
+        LocalMaterial {
+            albedo: load3(s, &self.albedo, i),
+            emission: load3(s, &self.emission, i),
+            specular: load(s, &self.specular, i),
+            metallic: load(s, &self.metallic, i),
+            roughness: load(s, &self.roughness, i),
+            transmission: load(s, &self.transmission, i),
+            shininess: load(s, &self.shininess, i),
+        }
+    }
+
+    /// How smooth those from number `i` on are for a light model: see [`zeroset_shade::light::response`].
+    #[inline(always)]
+    pub(crate) fn finish<S: Simd>(&self, s: S, shading: Shading, i: usize) -> Lanes<S> {
+        let column = match shading {
+            Shading::Phong => &self.shininess,
+            Shading::Physical | Shading::Lambert | Shading::LambertLegacy => &self.roughness,
+        };
+        load(s, column, i)
+    }
+
+    /// Shows clear bodies as if they were none.
+    pub(crate) fn make_opaque(&mut self, count: usize) {
+        self.transmission[..count].fill(0.0);
+    }
+
+    /// What number `i` is made of.
+    pub(crate) fn get(&self, i: usize) -> LocalMaterial<f32> {
+        let vector = |[x, y, z]: &[Box<Sheet>; 3]| v3(x[i], y[i], z[i]);
+        LocalMaterial {
+            albedo: vector(&self.albedo),
+            emission: vector(&self.emission),
+            specular: self.specular[i],
+            metallic: self.metallic[i],
+            roughness: self.roughness[i],
+            transmission: self.transmission[i],
+            shininess: self.shininess[i],
         }
     }
 }

@@ -2,14 +2,16 @@
 
 use crate::march::ITERATIONS;
 use crate::order::Sorting;
+use crate::paths::Paths;
 use crate::planes::Planes;
 use crate::ray::{Common, Queue, RayColumns, WideRay};
 use crate::simd::{Row, SLACK, Sheet, TILE_RAYS, WordRow, WordSheet};
 use crate::stop::Stop;
+use crate::surface::MaterialColumns;
 use fearless_simd::Simd;
 use zeroset_eval::Workspace;
 use zeroset_field::program::Program;
-use zeroset_number::{Lanes, Real};
+use zeroset_number::{Lanes, Real, Vec3, v3};
 use zeroset_scene::render::Evaluations;
 use zeroset_shade::view::{Region, View};
 
@@ -203,7 +205,11 @@ pub(crate) struct Hits {
     pub(crate) diffuse: [Box<Sheet>; 3],
     /// Light in the highlight.
     pub(crate) gloss: [Box<Sheet>; 3],
-    pub(crate) albedo: [Box<Sheet>; 3],
+    /// The part of it that the rise of Fresnel's law weighs.
+    pub(crate) grazing: [Box<Sheet>; 3],
+    pub(crate) material: MaterialColumns,
+    /// The share of the reflection that rays follow.
+    pub(crate) followed: Box<Sheet>,
     pub(crate) colour: [Box<Sheet>; 3],
 }
 
@@ -212,6 +218,18 @@ impl Hits {
     #[inline(always)]
     pub(crate) fn ray<S: Simd>(&self, s: S, i: usize) -> WideRay<Lanes<S>> {
         self.rays.load(s, &self.common, i)
+    }
+
+    /// The place of hit number `i`.
+    pub(crate) fn point(&self, i: usize) -> Vec3<f32> {
+        let [x, y, z] = &self.point;
+        v3(x[i], y[i], z[i])
+    }
+
+    /// The normal of hit number `i`.
+    pub(crate) fn normal(&self, i: usize) -> Vec3<f32> {
+        let [x, y, z] = &self.normal;
+        v3(x[i], y[i], z[i])
     }
 }
 
@@ -252,6 +270,8 @@ pub(crate) struct Scratch {
     /// How much reaches each hit of what secondary rays look for.
     pub(crate) lit: Box<Sheet>,
     pub(crate) hits: Hits,
+    /// Rays that go on from hits.
+    pub(crate) paths: Paths,
     /// Evaluations of the rays that hit nothing, by pixel.
     pub(crate) steps: Box<Sheet>,
     pub(crate) exhausted: Vec<Exhausted>,
@@ -333,9 +353,12 @@ impl Scratch {
                 shares: Sheet::boxed(),
                 diffuse: sheet3(),
                 gloss: sheet3(),
-                albedo: sheet3(),
+                grazing: sheet3(),
+                material: MaterialColumns::new(),
+                followed: Sheet::boxed(),
                 colour: sheet3(),
             },
+            paths: Paths::new(),
             steps: Sheet::boxed(),
             exhausted: Vec::with_capacity(WIDTH * HEIGHT),
             sorting: Sorting::new(),

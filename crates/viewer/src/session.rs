@@ -350,6 +350,7 @@ fn merged(before: &Settings, edited: &Settings, now: &Settings) -> Settings {
         footprint,
         normals,
         shading,
+        integrator,
         occlusion,
         antialias,
         seed,

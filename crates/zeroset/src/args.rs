@@ -12,7 +12,7 @@ use zeroset_language::limits::Limits;
 use zeroset_scene::film::Plane;
 use zeroset_scene::methods::Choice;
 use zeroset_scene::scene::Scene;
-use zeroset_scene::settings::{Antialias, March, Normals, Occlusion, Shading, Shadow};
+use zeroset_scene::settings::{Antialias, Integrator, March, Normals, Occlusion, Shading, Shadow};
 
 /// Renders signed distance fields: from a scene of a few lines to a picture.
 #[derive(Debug, Parser)]
@@ -178,6 +178,8 @@ pub(crate) struct Methods {
     pub aa: Option<Chosen<Antialias>>,
     #[arg(long, value_name = "METHOD", help_heading = "Methods", help = help::<Shading>("How light becomes colour"))]
     pub shading: Option<Chosen<Shading>>,
+    #[arg(long, value_name = "METHOD", help_heading = "Methods", help = help::<Integrator>("Which ways light takes to the eye"))]
+    pub integrator: Option<Chosen<Integrator>>,
 }
 
 impl Methods {
@@ -193,6 +195,12 @@ impl Methods {
         put("ao", self.ao, &mut settings.occlusion, limits)?;
         put("aa", self.aa, &mut settings.antialias, limits)?;
         put("shading", self.shading, &mut settings.shading, limits)?;
+        put(
+            "integrator",
+            self.integrator,
+            &mut settings.integrator,
+            limits,
+        )?;
         for light in &mut parts.lights {
             put("shadow", self.shadow, &mut light.shadow, limits)?;
         }

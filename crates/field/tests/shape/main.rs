@@ -44,6 +44,7 @@ fn text(shape: impl Into<Shape>) -> String {
             Node::Polar { polar, .. } => format!("{polar:?}"),
             Node::Formula(_) => "formula".into(),
             Node::Sampled(_) => "sampled".into(),
+            Node::Sided(_) => "sided".into(),
             Node::Paint { paint, .. } => format!("{paint:?}"),
         };
         format!("{own}({})", children.join(", "))

@@ -224,7 +224,7 @@ impl Writer {
             }
             Node::Formula(formula) => ("formula", super::formula::write(formula)),
             // refused before: see `expand`
-            Node::Sampled(_) => return Value::Null,
+            Node::Sampled(_) | Node::Sided(_) => return Value::Null,
         };
         json!({ name: body })
     }

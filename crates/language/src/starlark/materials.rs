@@ -29,15 +29,39 @@ pub(crate) const ALL: &[Native] = &[
         [
             slot("color", "\"#cbc8c4\"", "A colour or a pattern."),
             slot("metallic", "0", "0 plastic or stone, 1 metal."),
-            slot("roughness", "0.5", "0 mirror, 1 chalk."),
-            slot("specular", "0.25", "Strength of the highlight, 0 to 10."),
+            slot(
+                "roughness",
+                "0.5",
+                "0 mirror, 1 chalk; from `shininess` where that alone is given."
+            ),
+            slot(
+                "specular",
+                "0.25",
+                "Strength of the highlight, 0 to 10; 0.25 is usual for glass, stone and plastic."
+            ),
             slot(
                 "shininess",
-                "40",
-                "Sharpness of the highlight, 1 to 10,000."
+                "from roughness",
+                "Sharpness of the highlight in Phong's model, 1 to 10,000."
             ),
             slot("emission", "\"black\"", "The colour that it glows in."),
-            slot("strength", "1", "How strongly it glows.")
+            slot("strength", "1", "How strongly it glows."),
+            slot(
+                "transmission",
+                "0",
+                "0 opaque, 1 glass: what light is not reflected goes on inside."
+            ),
+            slot(
+                "ior",
+                "1.5",
+                "Index of refraction, 1 to 4: 1.33 water, 1.5 glass, 2.42 diamond."
+            ),
+            slot(
+                "tint",
+                "\"white\"",
+                "Colour that white light has after the way `tint_depth` inside."
+            ),
+            slot("tint_depth", "1", "See `tint`; scene units.")
         ],
         material
     ),
@@ -277,15 +301,42 @@ fn material(c: &mut Call<'_, '_>) -> Run<Value> {
         },
     };
     let strength = c.number_or("strength", 1.0, 0.0, 1e6)? as f32;
+    let number = |name, default: f32, least, most| -> Run<Option<f32>> {
+        let number = c.number_or(name, f64::from(default), least, most)? as f32;
+        Ok(c.get(name).is_some().then_some(number))
+    };
+    let roughness = number("roughness", default.roughness, 0.0, 1.0)?;
+    let shininess = number("shininess", default.shininess, 1.0, 1e4)?;
+    let depth = c.number_or("tint_depth", 1.0, SMALL, LARGE)? as f32;
     let material = Material {
         pattern,
         specular: c.number_or("specular", f64::from(default.specular), 0.0, 10.0)? as f32,
-        shininess: c.number_or("shininess", f64::from(default.shininess), 1.0, 1e4)? as f32,
+        shininess: (shininess.or(roughness.map(shininess_of))).unwrap_or(default.shininess),
         metallic: c.number_or("metallic", f64::from(default.metallic), 0.0, 1.0)? as f32,
-        roughness: c.number_or("roughness", f64::from(default.roughness), 0.0, 1.0)? as f32,
+        roughness: (roughness.or(shininess.map(roughness_of))).unwrap_or(default.roughness),
+        transmission: c.number_or("transmission", f64::from(default.transmission), 0.0, 1.0)?
+            as f32,
+        ior: c.number_or("ior", f64::from(default.ior), 1.0, 4.0)? as f32,
+        attenuation: attenuation(c.colour_or("tint", "white")?, depth),
         emission: c.colour_or("emission", "black")? * strength,
     };
     c.machine.thing(Thing::Material(material.into()))
+}
+
+/// The exponent of Blinn's highlight that is about as wide as that of a roughness: `2 / alpha^2 - 2` (Walter et al. 2007).
+fn shininess_of(roughness: f32) -> f32 {
+    (2.0 / roughness.powi(4).max(1e-6) - 2.0).clamp(1.0, 1e4)
+}
+
+/// The other way round.
+fn roughness_of(shininess: f32) -> f32 {
+    (2.0 / (shininess + 2.0)).powf(0.25)
+}
+
+/// What leaves of white light a colour after a way (Beer's law). Black is what leaves a millionth.
+fn attenuation(tint: Vec3, depth: f32) -> Vec3 {
+    Vec3::from(tint.to_array().map(|c| -(c.clamp(1e-6, 1.0).ln()) / depth))
+        .clamp(Vec3::ZERO, Vec3::splat(1e6))
 }
 
 fn pattern(c: &mut Call<'_, '_>, pattern: Pattern) -> Run<Value> {

@@ -7,7 +7,9 @@ use crate::draft::check_size;
 use crate::report::suggestion;
 use std::sync::LazyLock;
 use zeroset_scene::methods::{self, Choice, Group, Kind, Param};
-use zeroset_scene::settings::{Antialias, March, Normals, Occlusion, Settings, Shading, Shadow};
+use zeroset_scene::settings::{
+    Antialias, Integrator, March, Normals, Occlusion, Settings, Shading, Shadow,
+};
 
 /// The functions.
 pub(crate) fn all() -> &'static [Native] {
@@ -34,6 +36,7 @@ pub(crate) fn all() -> &'static [Native] {
         functions::<Shadow>(&mut all, |c| make(c, Thing::Shadow));
         functions::<Occlusion>(&mut all, |c| make(c, Thing::Occlusion));
         functions::<Antialias>(&mut all, |c| make(c, Thing::Antialias));
+        functions::<Integrator>(&mut all, |c| make(c, Thing::Integrator));
         all
     });
     &ALL
@@ -91,6 +94,10 @@ fn slots() -> &'static [Slot] {
         choice(Group::of::<Occlusion>(), "Ambient occlusion"),
         choice(Group::of::<Antialias>(), "Antialiasing"),
         choice(Group::of::<Shading>(), "How light becomes colour"),
+        choice(
+            Group::of::<Integrator>(),
+            "Which ways light takes to the eye",
+        ),
         number(Settings::EXPOSURE),
         slot(
             "seed",
@@ -220,6 +227,7 @@ fn render(c: &mut Call<'_, '_>) -> Run<Value> {
         footprint: c.real(Settings::FOOTPRINT)?,
         normals: c.worded()?,
         shading: c.worded()?,
+        integrator: c.method(Thing::integrator)?,
         occlusion: c.method(Thing::occlusion)?,
         antialias: c.method(Thing::antialias)?,
         seed: c.count_or("seed", d.seed, 0, u32::MAX)?,

@@ -58,6 +58,7 @@ pub(crate) enum Thing {
     Shadow(settings::Shadow),
     Occlusion(settings::Occlusion),
     Antialias(settings::Antialias),
+    Integrator(settings::Integrator),
     /// `none()`, which several settings take.
     Nothing,
     Orthographic(f64),
@@ -76,6 +77,7 @@ impl Thing {
             Thing::Shadow(_) => settings::Shadow::WHAT,
             Thing::Occlusion(_) => settings::Occlusion::WHAT,
             Thing::Antialias(_) => settings::Antialias::WHAT,
+            Thing::Integrator(_) => settings::Integrator::WHAT,
             Thing::Nothing => "none()",
             Thing::Orthographic(_) => "an orthographic lens",
             Thing::Expression(_) => "a value of a formula",
@@ -110,6 +112,14 @@ impl Thing {
     pub(crate) fn antialias(&self) -> Option<settings::Antialias> {
         match self {
             Thing::Antialias(antialias) => Some(*antialias),
+            _ => None,
+        }
+    }
+
+    /// The integrator that it is, if it is one.
+    pub(crate) fn integrator(&self) -> Option<settings::Integrator> {
+        match self {
+            Thing::Integrator(integrator) => Some(*integrator),
             _ => None,
         }
     }

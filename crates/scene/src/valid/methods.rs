@@ -2,7 +2,7 @@
 
 use super::{Checked, Fault, SAMPLES, SceneError};
 use crate::methods::{Choice, Param, Value};
-use crate::settings::{Antialias, March, Occlusion, Shadow};
+use crate::settings::{Antialias, Integrator, March, Occlusion, Shadow};
 
 /// Whether a marcher's numbers are in their ranges.
 ///
@@ -34,6 +34,14 @@ pub fn occlusion(occlusion: &Occlusion, samples: u32) -> Checked {
 /// Which number is wrong.
 pub fn antialias(antialias: &Antialias, samples: u32) -> Checked {
     method(antialias, samples.min(SAMPLES))
+}
+
+/// Whether an integrator's numbers are in their ranges.
+///
+/// # Errors
+/// Which number is wrong.
+pub fn integrator(integrator: &Integrator) -> Checked {
+    method(integrator, SAMPLES)
 }
 
 fn method<T: Choice>(chosen: &T, samples: u32) -> Checked {

@@ -102,7 +102,7 @@ fn ao_cones(at: Surface, how: Occluder) -> AmbientVisibility {
     var to: array<vec3f, CONES>;
     var clear: array<f32, CONES>;
     for (var k = 0u; k < CONES; k++) {
-        let ray = Ray(origin, turn_cone(at.normal, cone_direction(f32(k))));
+        let ray = ray_from(origin, turn_cone(at.normal, cone_direction(f32(k))));
         let cosine = of_ring(k, CONE_COSINES);
         let start = max(at.offset * CONE_START, ball * (CONE_FREE * cosine));
         let end = max(min(leave(ray, CONE_SURE * CONE_FULL, at.offset), far), start);

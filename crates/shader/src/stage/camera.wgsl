@@ -3,14 +3,24 @@
 struct Ray {
     origin: vec3f,
     direction: vec3f,
+    /// How much narrower the footprint of its pixel is than in the middle of the picture, for the same distance.
+    narrow: f32,
+    /// The way from the eye to the origin: the footprint grows along all of it.
+    travelled: f32,
+}
+
+/// A ray of which the width does not matter.
+fn ray_from(origin: vec3f, direction: vec3f) -> Ray {
+    return Ray(origin, direction, 1.0, 0.0);
 }
 
 fn camera_ray(at: vec2f) -> Ray {
     let q = on_plane(at, frame.half, frame.scale);
     if (frame.pinhole != 0u) {
-        return Ray(frame.eye, pinhole_ray(q, frame.right, frame.up, frame.back));
+        let direction = pinhole_ray(q, frame.right, frame.up, frame.back);
+        return Ray(frame.eye, direction, view_narrowness(direction, frame.back), 0.0);
     }
-    return Ray(across_plane(q, frame.right, frame.up, frame.eye), -frame.back);
+    return Ray(across_plane(q, frame.right, frame.up, frame.eye), -frame.back, 1.0, 0.0);
 }
 
 /// A cone around the ray through `at` that holds all rays through the square of `reach` pixels around it: slope and constant
@@ -38,22 +48,14 @@ fn wants_detail() -> bool {
     return frame.detail != 0u;
 }
 
-/// How much narrower the footprint of a pixel is along a ray than in the middle of the picture, for the same distance.
-fn narrowness(ray: Ray) -> f32 {
-    if (frame.pinhole == 0u) {
-        return 1.0;
-    }
-    return view_narrowness(ray.direction, frame.back);
-}
-
 /// The width of a pixel at distance `t`: the side of a square of its area.
 fn pixel_width(ray: Ray, t: f32) -> f32 {
-    return width_of_pixel(t, narrowness(ray), frame.pixel);
+    return width_of_pixel(t + ray.travelled, ray.narrow, frame.pixel);
 }
 
 /// The radius of the footprint at distance `t`.
 fn footprint(ray: Ray, t: f32) -> f32 {
-    return radius_of_footprint(t, narrowness(ray), frame.footprint * frame.pixel, frame.rounding);
+    return radius_of_footprint(t + ray.travelled, ray.narrow, frame.footprint * frame.pixel, frame.rounding);
 }
 
 /// Whether the field is an estimate of something without an end to its detail.

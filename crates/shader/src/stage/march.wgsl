@@ -7,7 +7,6 @@
 /// Marches a ray from `start` to `end`. `slope` is the field's slope along it, as far as it is known.
 fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
     let fractal = is_fractal();
-    let narrow = narrowness(ray);
     let finer = min(f32(frame.size.y) / FINE_ROWS, 1.0);
     let foot = frame.footprint * select(finer, 1.0 / sqrt(f32(max(frame.samples, 1u))), fractal);
     let share = select(LEAST_SHARE, LEAST_SHARE_OF_FRACTALS, fractal);
@@ -31,8 +30,9 @@ fn march(ray: Ray, start: f32, end: f32, slope: f32) -> Found {
         let to = t + z;
         let p = ray.origin + ray.direction * to;
         var next = side * field(p);
-        let rounding = frame.rounding.x * to + frame.rounding.y;
-        let radius = foot * (frame.pixel.x * to * narrow + frame.pixel.y);
+        let way = to + ray.travelled;
+        let rounding = frame.rounding.x * way + frame.rounding.y;
+        let radius = foot * (frame.pixel.x * way * ray.narrow + frame.pixel.y);
         let limit = radius + rounding;
         if (crossed) {
             let settled = bracket_settled(part, to, next, max(limit * SETTLED, to * EPSILON));

@@ -25,7 +25,7 @@ fn secondary_ray(at: Surface, to: vec3f, distance: f32, kind: u32, sharpness: f3
     // whether the ray has touched something: from there on only what it hits is dark
     var touched = false;
     let stop = select(2.0 * behind_surface(at.point), at.offset * SECONDARY_STOP, is_fractal());
-    let end = min(min(leave(Ray(origin, to), width, at.offset), distance), frame.far);
+    let end = min(min(leave(ray_from(origin, to), width, at.offset), distance), frame.far);
     var t = min(at.offset * SECONDARY_FIRST, end);
     var z = 0.0;
     var r = 0.0;

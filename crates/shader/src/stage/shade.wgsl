@@ -4,9 +4,8 @@
 struct LocalMaterial {
     albedo: vec3f,
     emission: vec3f,
-    specular: f32,
-    metallic: f32,
-    roughness: f32,
+    /// Specular, metallic, roughness, transmission.
+    finish: vec4f,
     shininess: f32,
 }
 
@@ -16,6 +15,8 @@ struct Arrival {
     diffuse: vec3f,
     /// In the highlight, before the material's strength.
     gloss: vec3f,
+    /// The part of it that the rise of Fresnel's law weighs.
+    grazing: vec3f,
     /// How much there would be without shadows, and how much there is.
     share: f32,
     lit: f32,
@@ -30,30 +31,33 @@ fn towards(light: Light, p: vec3f) -> vec4f {
 }
 
 /// What arrives from all lights.
-fn arriving(at: Surface, shininess: f32) -> Arrival {
-    var sum = Arrival(vec3f(0.0), vec3f(0.0), 0.0, 0.0);
+fn arriving(at: Surface, what: LocalMaterial) -> Arrival {
+    var sum = Arrival(vec3f(0.0), vec3f(0.0), vec3f(0.0), 0.0, 0.0);
+    // lights do not shine on the inner side of a clear body
+    let shone = select(1.0, 1.0 - what.finish.w, at.side < 0.0);
     let origin = at.point + at.normal * at.offset;
     for (var k = 0u; k < frame.lights; k++) {
         let light = load_light(frame.light_rows + k * LIGHT_ROWS);
         let ray = towards(light, origin);
         let lit = shadow(at, light, ray.xyz, ray.w);
         let to = towards(light, at.point);
-        // by the cosine law, in the highlight, and what distance leaves
-        let answer = light_response(to.xyz, to.w, light.kind, at.normal, at.direction, shininess);
-        let power = answer.z * lit;
+        // by the cosine law, in the highlight, the part of that at grazing angles, and what distance leaves
+        let answer = light_response(to.xyz, to.w, light.kind, at.normal, at.direction, light_finish(what));
+        let power = answer.w * lit;
         sum.diffuse += light.radiance * (answer.x * power);
-        sum.gloss += light.radiance * (answer.y * power);
-        sum.share += answer.z * light.luminance;
+        sum.gloss += light.radiance * (answer.y * power * shone);
+        sum.grazing += light.radiance * (answer.z * power * shone);
+        sum.share += answer.w * light.luminance;
         sum.lit += power * light.luminance;
     }
     return sum;
 }
 
-/// The colour of a surface in the light that it gets.
-fn colour_of(what: LocalMaterial, light: Arrival, at: Surface, seen: AmbientVisibility) -> vec3f {
+/// The colour of a surface in the light that it gets, but for the share of its reflection that rays follow.
+fn colour_of(what: LocalMaterial, light: Arrival, at: Surface, seen: AmbientVisibility, followed: f32) -> vec3f {
     return surface_colour(
-        what.albedo, what.emission, what.specular, what.metallic, what.roughness,
-        light.diffuse, light.gloss, seen.open, seen.bent, at.normal, at.direction,
-        frame.sky_horizon, frame.sky_top, frame.sky_bottom, frame.ambient,
+        what.albedo, what.emission, what.finish,
+        light.diffuse, light.gloss, light.grazing, seen.open, seen.bent, at.normal, at.direction,
+        frame.sky_horizon, frame.sky_top, frame.sky_bottom, frame.ambient, followed,
     );
 }

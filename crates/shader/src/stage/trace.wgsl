@@ -1,19 +1,29 @@
-// One ray, from the camera to its colour.
+// A ray from the camera, and those that go on from where it ends: one after the other, so that the field is in one place only.
 
-fn local_material(number: f32, at: Place) -> LocalMaterial {
+/// A material; the last one where there is none of this number.
+fn material_numbered(number: f32) -> Material {
     let known = number >= 0.0 && number < f32(frame.materials);
     let which = select(frame.materials, u32(max(number, 0.0)), known);
-    let m = load_material(frame.material_rows + which * MATERIAL_ROWS);
-    return LocalMaterial(pattern_colour(m, at), m.emission, m.specular, m.metallic, m.roughness, m.shininess);
+    return load_material(frame.material_rows + which * MATERIAL_ROWS);
 }
 
+/// The clear body that a ray is in, or that it meets from outside.
+fn body_of(path: Onward, met: f32) -> Material {
+    return material_numbered(select(met, path.medium, path.medium >= 0.0));
+}
+
+fn local_material(number: f32, at: Place) -> LocalMaterial {
+    let m = material_numbered(number);
+    let finish = vec4f(m.specular, m.metallic, m.roughness, m.transmission);
+    return LocalMaterial(pattern_colour(m, at), m.emission, finish, m.shininess);
+}
+
+/// Two materials mixed.
 fn blend(a: LocalMaterial, b: LocalMaterial, share: f32) -> LocalMaterial {
     return LocalMaterial(
         mix(a.albedo, b.albedo, share),
         mix(a.emission, b.emission, share),
-        mix(a.specular, b.specular, share),
-        mix(a.metallic, b.metallic, share),
-        mix(a.roughness, b.roughness, share),
+        mix(a.finish, b.finish, share),
         mix(a.shininess, b.shininess, share),
     );
 }
@@ -24,10 +34,62 @@ fn background(ray: Ray, steps: u32) -> Sample {
     return Sample(colour, -1.0, vec3f(0.0), 0.0, vec3f(0.0), 1.0, 1.0, 0.0, f32(steps), 0u);
 }
 
+/// A ray that waits to be followed.
+struct Onward {
+    ray: Ray,
+    /// The share of its light that comes to the eye.
+    weight: vec3f,
+    /// Reflections on the way, and surfaces of clear bodies that were passed or met from inside.
+    bounces: vec2u,
+    /// The material of the clear body that the ray is in, by number; -1 where it is in none.
+    medium: f32,
+}
+
 /// Follows ray number `index` of a pixel. `span` is the part of it that may hold the surface.
 fn trace_ray(pixel: vec2u, index: u32, ray: Ray, span: vec3f) -> Sample {
-    let start = max(max(enter(ray, frame.threshold.x, frame.threshold.y), frame.near), span.x);
-    let end = min(min(leave(ray, frame.threshold.x, frame.threshold.y), frame.far), span.z);
+    var first = Sample();
+    var waiting: array<Onward, WAITING>;
+    var count = 1u;
+    waiting[0] = Onward(ray, vec3f(1.0), vec2u(0u), -1.0);
+    var is_first = true;
+    while (count > 0u) {
+        count -= 1u;
+        let path = waiting[count];
+        var next = array<Onward, 2>();
+        var known = vec3f(0.0, -1.0, FAR);
+        if (is_first) {
+            known = span;
+        }
+        let found = follow(pixel, index, path, known, is_first, &next);
+        if (is_first) {
+            first = found;
+        } else {
+            first.colour += path.weight * found.colour;
+        }
+        is_first = false;
+        if (gives_up()) {
+            break;
+        }
+        for (var k = 0u; k < 2u; k++) {
+            if (max(max(next[k].weight.x, next[k].weight.y), next[k].weight.z) > 0.0 && count < WAITING) {
+                waiting[count] = next[k];
+                count += 1u;
+            }
+        }
+    }
+    return first;
+}
+
+/// Follows one ray. Rays that go on from where it ends are left in `next`, those that weigh nothing do not.
+fn follow(pixel: vec2u, index: u32, path: Onward, span: vec3f, is_first: bool, next: ptr<function, array<Onward, 2>>) -> Sample {
+    let ray = path.ray;
+    march_side = select(1.0, -1.0, path.medium >= 0.0);
+    let reach = frame.threshold.y + frame.threshold.x * ray.travelled;
+    var start = span.x;
+    if (is_first) {
+        start = max(max(enter(ray, frame.threshold.x, frame.threshold.y), frame.near), span.x);
+    }
+    let end = min(min(leave(ray, frame.threshold.x, reach), frame.far), span.z);
     if (!(start < end)) {
         return background(ray, 0u);
     }
@@ -67,7 +129,11 @@ fn trace_ray(pixel: vec2u, index: u32, ray: Ray, span: vec3f) -> Sample {
         }
     }
     let at = Surface(point, normal, found.side, 2.0 * max(abs(found.f), footprint(ray, t)), ray.direction);
-    let marks = field_marks(point - normal * (MARKS_BEHIND * (frame.rounding.x * t + frame.rounding.y)));
+    // where a clear and an opaque body touch, the opaque one counts
+    march_side = select(1.0, INSIDE_MARKS, path.medium >= 0.0);
+    let marks = field_marks(point - normal * (MARKS_BEHIND * (frame.rounding.x * (t + ray.travelled) + frame.rounding.y)));
+    // from here on only what is outside matters
+    march_side = 1.0;
     counted[COUNT_MATERIAL] += 1u;
     let key = scramble(pixel, frame.seed ^ ((index + 1u) * HIT_SEEDS));
     let object = select(frame.objects, u32(max(marks.object, 0.0)), marks.object >= 0.0 && marks.object < f32(frame.objects));
@@ -82,9 +148,16 @@ fn trace_ray(pixel: vec2u, index: u32, ray: Ray, span: vec3f) -> Sample {
     if (marks.share > 0.0) {
         what = blend(what, local_material(marks.second, place), marks.share);
     }
-    let light = arriving(at, what.shininess);
-    let colour = colour_of(what, light, at, seen);
-    counted[COUNT_HITS] += 1u;
+    let light = arriving(at, what);
+    var followed = 0.0;
+    if (frame.reflections + frame.refractions > 0u) {
+        followed = go_on(path, at, t, what, marks.first, next);
+    }
+    var colour = colour_of(what, light, at, seen, followed);
+    if (found.side < 0.0 && (path.medium >= 0.0 || what.finish.w > 0.0)) {
+        colour *= transmittance(body_of(path, marks.first).attenuation, t);
+    }
+    counted[COUNT_HITS] += select(0u, 1u, is_first);
     return Sample(
         colour,
         t,
@@ -97,4 +170,54 @@ fn trace_ray(pixel: vec2u, index: u32, ray: Ray, span: vec3f) -> Sample {
         f32(found.steps),
         0u,
     );
+}
+
+/// Sends rays on from a surface that a ray met at the distance `t`, into `next`. Gives the share of its reflection that they follow. The
+/// twin of `Whitted::go_on` of the CPU renderer.
+fn go_on(path: Onward, at: Surface, t: f32, what: LocalMaterial, material: f32, next: ptr<function, array<Onward, 2>>) -> f32 {
+    let inside = at.side < 0.0;
+    let clear = what.finish.w * (1.0 - what.finish.y);
+    let smooth_share = followed_share(what.finish.z);
+    if (clear <= 0.0 && (inside || smooth_share <= 0.0)) {
+        return 0.0;
+    }
+    let d = at.direction;
+    let n = at.normal;
+    let cosine = clamp(-dot(n, d), 0.0, 1.0);
+    let travelled = t + path.ray.travelled;
+    let body = body_of(path, material);
+    var medium = -1.0;
+    var weight = path.weight;
+    if (inside) {
+        weight *= transmittance(body.attenuation, t);
+        medium = select(material, path.medium, path.medium >= 0.0);
+    }
+    var reflected = vec3f(0.0);
+    if (!inside) {
+        reflected = mirror_reflectance(what.albedo, what.finish, cosine) * (smooth_share * (1.0 - clear));
+    }
+    let bounces = path.bounces + select(vec2u(1u, 0u), vec2u(0u, 1u), inside);
+    if (clear > 0.0) {
+        let met = border(d, n, select(body.ior, 1.0 / body.ior, inside));
+        reflected += vec3f(clear * met.w);
+        let through = clear * (1.0 - met.w);
+        let colour = select(what.albedo, vec3f(1.0), inside);
+        let passed = weight * colour * through;
+        if (path.bounces.y < frame.refractions && is_bright(passed)) {
+            let ray = Ray(at.point - n * at.offset, met.xyz, path.ray.narrow, travelled);
+            (*next)[0] = Onward(ray, passed, path.bounces + vec2u(0u, 1u), select(material, -1.0, inside));
+        }
+    }
+    let mirrored = weight * reflected;
+    if (bounces.x <= frame.reflections && bounces.y <= frame.refractions && is_bright(mirrored)) {
+        let ray = Ray(at.point + n * at.offset, d + n * (2.0 * cosine), path.ray.narrow, travelled);
+        (*next)[1] = Onward(ray, mirrored, bounces, medium);
+        return smooth_share + (1.0 - smooth_share) * clear;
+    }
+    return clear;
+}
+
+/// Whether light of this weight is worth a ray.
+fn is_bright(weight: vec3f) -> bool {
+    return max(max(weight.x, weight.y), weight.z) >= FAINTEST;
 }

@@ -21,12 +21,14 @@ var<private> note_read: u32;
 /// What the notes do not answer: 0 for nothing yet.
 var<private> asked: u32;
 var<private> asked_at: vec3f;
+var<private> asked_side: f32;
 
 /// Whether the next question is answered, with so many words.
 fn is_noted(kind: u32, p: vec3f, words: u32) -> bool {
     if (asked == 0u && note_read + words > note_count) {
         asked = kind;
         asked_at = p;
+        asked_side = march_side;
     }
     return asked == 0u;
 }
@@ -49,6 +51,11 @@ fn cell(i: u32) -> f32 {
 
 fn set_cell(i: u32, value: f32) {
     notes[note_first + (i + 1u) * note_stride] = bitcast<u32>(value);
+}
+
+/// Whether what follows is not the ray's.
+fn gives_up() -> bool {
+    return asked != 0u;
 }
 
 fn field(p: vec3f) -> f32 {
@@ -86,6 +93,7 @@ fn field_marks(p: vec3f) -> Marks {
 
 /// Asks the field, and notes what it says.
 fn answer() {
+    march_side = asked_side;
     if (asked == ASKED_VALUE) {
         write_note(asked_field(asked_at));
     }

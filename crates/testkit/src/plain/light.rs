@@ -26,12 +26,13 @@ pub(super) struct Surface {
 pub(super) struct Light {
     pub(super) diffuse: Vec3,
     pub(super) gloss: Vec3,
+    pub(super) grazing: Vec3,
     pub(super) shadow: f32,
 }
 
 impl Plain<'_> {
     /// Sums up what arrives from the lights.
-    pub(super) fn light(&self, probe: &mut impl Probe, at: &Surface, shininess: f32) -> Light {
+    pub(super) fn light(&self, probe: &mut impl Probe, at: &Surface, finish: f32) -> Light {
         let (mut sum, mut shares) = (Light::default(), 0.0);
         for light in self.scene.lights() {
             let origin = at.p + at.normal * at.offset;
@@ -55,10 +56,11 @@ impl Plain<'_> {
                 n,
                 d,
                 lit,
-                shininess,
+                finish,
             );
             sum.diffuse += glam(got.diffuse);
             sum.gloss += glam(got.gloss);
+            sum.grazing += glam(got.grazing);
             sum.shadow += got.share * lit;
             shares += got.share;
         }

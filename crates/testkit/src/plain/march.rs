@@ -1,6 +1,6 @@
 //! Primary rays and normals.
 
-use super::{Plain, Probe, field, glam};
+use super::{Plain, Probe, Ray, field, glam};
 use glam::Vec3;
 use zeroset_scene::settings::{March, Normals};
 use zeroset_shade::light;
@@ -28,17 +28,21 @@ pub(super) struct Ending {
 const PATIENCE: u32 = 400;
 
 impl Plain<'_> {
-    /// Marches a ray from where it enters the scene's box.
-    pub(super) fn march(&self, probe: &mut impl Probe, o: Vec3, d: Vec3) -> Found {
+    /// Marches a ray from where it enters the scene's box, or from a surface.
+    pub(super) fn march(&self, probe: &mut impl Probe, ray: &Ray) -> Found {
+        let Ray { o, d, .. } = *ray;
         let (a, b) = (field(o), field(d));
         let wide = self.view.threshold;
-        let start = self
-            .region
-            .enter(a, b, wide.slope, wide.constant)
-            .max(self.view.near);
+        let start = if ray.travelled > 0.0 {
+            0.0
+        } else {
+            self.region
+                .enter(a, b, wide.slope, wide.constant)
+                .max(self.view.near)
+        };
         let end = self
             .region
-            .leave(a, b, wide.slope, wide.constant)
+            .leave(a, b, wide.slope, wide.at(ray.travelled))
             .min(self.view.far);
         if start >= end {
             return Found {
@@ -49,7 +53,8 @@ impl Plain<'_> {
         let mut steps = 1;
         let first = probe.value(o + d * start);
         let side = if first < 0.0 { -1.0 } else { 1.0 };
-        let narrow = self.narrow(o, d);
+        let narrow = ray.narrow;
+        let way = |t: f32| t + ray.travelled;
         let fractal = self.quality.fractal;
         let footprint = if fractal {
             1.0 / (self.samples() as f32).sqrt()
@@ -57,8 +62,9 @@ impl Plain<'_> {
             self.view.fine
         };
         let share = if fractal { 0.5 } else { 1.0 / 16.0 };
-        let rounding = |t: f32| self.view.rounding.at(t);
-        let near = |t: f32| (self.view.near(t, narrow) - rounding(t)) * footprint + rounding(t);
+        let rounding = |t: f32| self.view.rounding.at(way(t));
+        let near =
+            |t: f32| (self.view.near(way(t), narrow) - rounding(t)) * footprint + rounding(t);
         let least = |t: f32| (near(t) - rounding(t)) * share + 4.0 * rounding(t);
         let behind = |t: f32| {
             let p = (o + d * t).abs();
@@ -130,7 +136,7 @@ impl Plain<'_> {
         if lost {
             // nobody knows: a surface only where the ray is within a pixel of it
             let slope = probe.gradient(o + d * t).length().max(1e-30);
-            arrived = r / slope < 2.0 * self.view.near(t, narrow);
+            arrived = r / slope < 2.0 * self.view.near(way(t), narrow);
         }
         let hit = match found {
             Some(t) => Some(Ending { t, f: 0.0, side }),
@@ -144,11 +150,12 @@ impl Plain<'_> {
         &self,
         probe: &mut impl Probe,
         p: Vec3,
-        d: Vec3,
+        ray: &Ray,
         t: f32,
         side: f32,
     ) -> Vec3 {
-        let h = step(field(p), self.view.width(t, self.narrow(p, d)));
+        let (d, way) = (ray.d, t + ray.travelled);
+        let h = step(field(p), self.view.width(way, ray.narrow));
         let mut sum = |samples: &[[f32; 3]]| {
             let part = |to: &[f32; 3]| {
                 let to = Vec3::from(*to);
@@ -164,7 +171,7 @@ impl Plain<'_> {
             Normals::Exact => {
                 let g = probe.gradient(p);
                 // on an edge the gradient may be that of the face behind it
-                let before = probe.gradient(p - d * self.view.near(t, self.narrow(p, d)));
+                let before = probe.gradient(p - d * self.view.near(way, ray.narrow));
                 match ((g * side).dot(d) > 0.0, (before * side).dot(d) > 0.0) {
                     (false, _) => g,
                     (true, false) => before,

@@ -22,13 +22,13 @@ use zeroset_number::v3;
 use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::material::Material;
 use zeroset_scene::scene::Scene;
-use zeroset_scene::settings::{Antialias, Filter, Settings};
+use zeroset_scene::settings::{Antialias, Filter, Integrator, Settings, Shading};
 use zeroset_shade::march::MARKS_BEHIND;
 use zeroset_shade::pattern::{Place, colour as pattern_colour};
 use zeroset_shade::sampling::{hit_seed, point, radius, scramble, weight};
 use zeroset_shade::skin::has_skins;
 use zeroset_shade::sky::{SkyColours, colour as sky};
-use zeroset_shade::surface::{Lighting, LocalMaterial, colour};
+use zeroset_shade::surface::{FAINTEST, Lighting, LocalMaterial, colour, followed_share, mirrored};
 use zeroset_shade::view::{Region, View};
 
 fn glam(v: zeroset_number::Vec3<f32>) -> Vec3 {
@@ -37,6 +37,44 @@ fn glam(v: zeroset_number::Vec3<f32>) -> Vec3 {
 
 fn field(v: Vec3) -> zeroset_number::Vec3<f32> {
     v3(v.x, v.y, v.z)
+}
+
+/// A ray, see `WideRay` of the CPU renderer.
+#[derive(Clone, Copy, Debug)]
+struct Ray {
+    o: Vec3,
+    d: Vec3,
+    narrow: f32,
+    travelled: f32,
+}
+
+/// How a ray came to be.
+#[derive(Clone, Copy, Debug)]
+struct Way {
+    /// The share of its light that comes to the eye.
+    weight: Vec3,
+    reflections: u32,
+    refractions: u32,
+    /// The clear body that it is in.
+    medium: Option<f32>,
+}
+
+impl Default for Way {
+    fn default() -> Way {
+        Way {
+            weight: Vec3::ONE,
+            reflections: 0,
+            refractions: 0,
+            medium: None,
+        }
+    }
+}
+
+/// A ray that goes on, and the share of its light that comes to where it begins.
+struct Onward {
+    ray: Ray,
+    share: Vec3,
+    way: Way,
 }
 
 /// What a ray found.
@@ -168,7 +206,21 @@ impl Plain<'_> {
         let ray = self.view.ray(x as f32 + u, y as f32 + v);
         let (o, d) = self.view.split(ray);
         let (o, d) = (glam(o), glam(d));
-        let found = self.march(probe, o, d);
+        let ray = Ray {
+            o,
+            d,
+            narrow: self.narrow(o, d),
+            travelled: 0.0,
+        };
+        let key = scramble(x, y, hit_seed(self.settings.seed, index));
+        self.follow(probe, &ray, key, &Way::default())
+    }
+
+    /// What a ray sees.
+    fn follow(&self, probe: &mut impl Probe, ray: &Ray, key: [u32; 2], way: &Way) -> Sample {
+        let Ray { o, d, .. } = *ray;
+        probe.enter(way.medium.is_some());
+        let found = self.march(probe, ray);
         let Some(end) = found.hit else {
             return Sample {
                 colour: glam(sky(&SkyColours::of(self.scene.sky()), d.y)),
@@ -176,16 +228,20 @@ impl Plain<'_> {
                 steps: found.steps,
             };
         };
+        let near = |t: f32| self.view.near(t + ray.travelled, ray.narrow);
         let (mut t, side) = (end.t, end.side);
         for _ in 0..self.settings.discontinuity_reduction {
-            let wanted = self.view.near(t, self.narrow(o, d));
+            let wanted = near(t);
             let by = side * probe.value(o + d * t) - wanted;
             t = (t + by.clamp(-2.0 * wanted, 2.0 * wanted)).max(0.0);
         }
         let p = o + d * t;
-        let offset = 2.0 * end.f.abs().max(self.view.near(t, self.narrow(o, d)));
-        let normal = self.normal(probe, p, d, t, side);
-        let mark = probe.marks(p - normal * (MARKS_BEHIND * self.view.rounding.at(t)));
+        let offset = 2.0 * end.f.abs().max(near(t));
+        let normal = self.normal(probe, p, ray, t, side);
+        let residual = probe.value(p).abs();
+        let travelled = t + ray.travelled;
+        let mark = probe.marks(p - normal * (MARKS_BEHIND * self.view.rounding.at(travelled)));
+        probe.enter(false);
         let surface = Surface {
             p,
             normal,
@@ -193,32 +249,71 @@ impl Plain<'_> {
             offset,
             d,
         };
-        let key = scramble(x, y, hit_seed(self.settings.seed, index));
         // inside a solid there is no sky: it is shown as if there were no solid
         let (open, bent) = if side < 0.0 {
             (1.0, normal)
         } else {
             self.occlusion(probe, &surface, mark.object, key)
         };
-        let pixel = self.view.width(t, self.narrow(o, d)) / (self.samples() as f32).sqrt();
-        let (what, shininess) = {
+        let pixel = self.view.width(travelled, ray.narrow) / (self.samples() as f32).sqrt();
+        let mut what = {
             let place = Place::new(field(p), field(normal), field(d), pixel);
             self.local_material(&mark, &place.with_orbit(mark.orbit))
         };
-        let light = self.light(probe, &surface, shininess);
+        let bounces = match (self.settings.shading, self.settings.integrator) {
+            (
+                Shading::Physical,
+                Integrator::Whitted {
+                    reflections,
+                    refractions,
+                },
+            ) => Some([reflections, refractions]),
+            _ => {
+                what.transmission = 0.0;
+                None
+            }
+        };
+        let finish = match self.settings.shading {
+            Shading::Phong => what.shininess,
+            _ => what.roughness,
+        };
+        let light = self.light(probe, &surface, finish);
+        let shone = if side < 0.0 {
+            1.0 - what.transmission
+        } else {
+            1.0
+        };
         let lighting = Lighting {
             diffuse: field(light.diffuse),
-            gloss: field(light.gloss),
+            gloss: field(light.gloss * shone),
+            grazing: field(light.grazing * shone),
             open,
             bent: field(bent),
             normal: field(normal),
             direction: field(d),
         };
         let sky_colours = SkyColours::of(self.scene.sky());
-        let c = colour(self.settings.shading, &sky_colours, &what, &lighting);
+        let bent_rays =
+            bounces.map(|limits| self.onward(ray, &surface, t, &what, &mark, way, limits));
+        let (onward, followed) = bent_rays.unwrap_or_default();
+        let mut c = glam(colour(
+            self.settings.shading,
+            &sky_colours,
+            &what,
+            &lighting,
+            followed,
+        ));
+        for next in onward {
+            let seen = self.follow(probe, &next.ray, key, &next.way);
+            c += next.share * seen.colour;
+        }
+        if side < 0.0 && (way.medium.is_some() || what.transmission > 0.0) {
+            let body = self.material(way.medium.unwrap_or(mark.first));
+            c *= (-body.attenuation * t).exp();
+        }
         let hit = Hit {
             t,
-            residual: probe.value(p).abs(),
+            residual,
             normal,
             albedo: glam(what.albedo),
             open,
@@ -226,9 +321,100 @@ impl Plain<'_> {
             object: mark.object + 1.0,
         };
         Sample {
-            colour: glam(c),
+            colour: c,
             hit: Some(hit),
             steps: found.steps,
+        }
+    }
+
+    /// The rays that go on from a surface, and the share of its reflection that they follow.
+    #[allow(clippy::too_many_arguments, reason = "all that is known of a hit")]
+    fn onward(
+        &self,
+        ray: &Ray,
+        at: &Surface,
+        t: f32,
+        what: &LocalMaterial<f32>,
+        mark: &Mark,
+        way: &Way,
+        limits: [u32; 2],
+    ) -> (Vec<Onward>, f32) {
+        let inside = at.side < 0.0;
+        let (d, n) = (at.d, at.normal);
+        let clear = what.transmission * (1.0 - what.metallic);
+        let smooth = followed_share(what.roughness);
+        let mut onward = Vec::new();
+        if clear <= 0.0 && (inside || smooth <= 0.0) {
+            return (onward, 0.0);
+        }
+        let medium = way.medium.unwrap_or(mark.first);
+        let body = self.material(medium);
+        let lost = if inside {
+            (-body.attenuation * t).exp()
+        } else {
+            Vec3::ONE
+        };
+        let mut send = |direction: Vec3, side: f32, share: Vec3, next: Way| {
+            let weight = way.weight * lost * share;
+            let bright = weight.max_element() >= FAINTEST;
+            if bright {
+                let ray = Ray {
+                    o: at.p + n * (side * at.offset),
+                    d: direction,
+                    narrow: ray.narrow,
+                    travelled: ray.travelled + t,
+                };
+                let way = Way { weight, ..next };
+                onward.push(Onward { ray, share, way });
+            }
+            bright
+        };
+        let cosine = (-n.dot(d)).clamp(0.0, 1.0);
+        let mut reflected = match inside {
+            true => Vec3::ZERO,
+            false => glam(mirrored(what, cosine).all) * (smooth * (1.0 - clear)),
+        };
+        if clear > 0.0 {
+            // Snell's law and Fresnel's equations, as textbooks have them
+            let (n1, n2) = if inside {
+                (body.ior, 1.0)
+            } else {
+                (1.0, body.ior)
+            };
+            let sine = (1.0 - cosine * cosine).sqrt() * n1 / n2;
+            let passes = sine < 1.0;
+            let inner = (1.0 - sine * sine).max(0.0).sqrt();
+            let across = (n1 * cosine - n2 * inner) / (n1 * cosine + n2 * inner);
+            let along = (n1 * inner - n2 * cosine) / (n1 * inner + n2 * cosine);
+            let back = match passes {
+                true => 0.5 * (across * across + along * along),
+                false => 1.0,
+            };
+            reflected += Vec3::splat(clear * back);
+            let tint = if inside { Vec3::ONE } else { glam(what.albedo) };
+            if passes && way.refractions < limits[1] {
+                let tangent = (d + n * cosine).normalize_or_zero();
+                let direction = (tangent * sine - n * inner).normalize();
+                let next = Way {
+                    refractions: way.refractions + 1,
+                    medium: (!inside).then_some(mark.first),
+                    ..*way
+                };
+                send(direction, -1.0, tint * (clear * (1.0 - back)), next);
+            }
+        }
+        let next = Way {
+            reflections: way.reflections + u32::from(!inside),
+            refractions: way.refractions + u32::from(inside),
+            medium: inside.then_some(medium),
+            ..*way
+        };
+        let allowed = next.reflections <= limits[0] && next.refractions <= limits[1];
+        let mirror = d + n * (2.0 * cosine);
+        if allowed && send(mirror, 1.0, reflected, next) {
+            (onward, smooth + (1.0 - smooth) * clear)
+        } else {
+            (onward, clear)
         }
     }
 
@@ -241,32 +427,30 @@ impl Plain<'_> {
         self.scene.materials().get(at).unwrap_or(&self.fallback)
     }
 
-    fn local_material(&self, mark: &Mark, at: &Place<f32>) -> (LocalMaterial<f32>, f32) {
+    fn local_material(&self, mark: &Mark, at: &Place<f32>) -> LocalMaterial<f32> {
         let of = |m: &Material, weight: f32| LocalMaterial {
             albedo: pattern_colour(&m.pattern, at) * weight,
             emission: field(m.emission * weight),
             specular: m.specular * weight,
             metallic: m.metallic * weight,
             roughness: m.roughness * weight,
+            transmission: m.transmission * weight,
+            shininess: m.shininess * weight,
         };
-        let first = self.material(mark.first);
-        let a = of(first, 1.0 - mark.share);
+        let a = of(self.material(mark.first), 1.0 - mark.share);
         if mark.share <= 0.0 {
-            return (a, first.shininess);
+            return a;
         }
-        let second = self.material(mark.second);
-        let b = of(second, mark.share);
-        let mixed = LocalMaterial {
+        let b = of(self.material(mark.second), mark.share);
+        LocalMaterial {
             albedo: a.albedo + b.albedo,
             emission: a.emission + b.emission,
             specular: a.specular + b.specular,
             metallic: a.metallic + b.metallic,
             roughness: a.roughness + b.roughness,
-        };
-        (
-            mixed,
-            first.shininess + (second.shininess - first.shininess) * mark.share,
-        )
+            transmission: a.transmission + b.transmission,
+            shininess: a.shininess + b.shininess,
+        }
     }
 
     /// Filters the samples, row by row, pixel by pixel.

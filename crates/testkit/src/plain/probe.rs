@@ -29,6 +29,9 @@ pub trait Probe {
     fn gradient(&mut self, p: Vec3) -> Vec3;
     /// The marks.
     fn marks(&mut self, p: Vec3) -> Mark;
+    /// From now on, whether values and gradients are those of the clear bodies alone, without the opaque ones in them. Where no scene
+    /// with clear bodies is rendered there is nothing to do.
+    fn enter(&mut self, _clear: bool) {}
 }
 
 /// A program, interpreted.
@@ -36,6 +39,9 @@ pub struct Compiled<'p> {
     program: &'p Program,
     values: Point<'p, f32>,
     gradients: Point<'p, Dual<f32>>,
+    /// The clear bodies alone, and whether they are asked for.
+    inside: Option<Program>,
+    is_inside: bool,
     /// The only mark there is, or memory to find one.
     marks: Result<Mark, Box<Workspace>>,
 }
@@ -47,6 +53,8 @@ impl<'p> Compiled<'p> {
             program,
             values: Point::new(program.values()),
             gradients: Point::new(program.values()),
+            inside: program.inside(),
+            is_inside: false,
             marks: only.ok_or_else(|| Box::new(Workspace::new(program.values(), program.marks()))),
         }
     }
@@ -54,10 +62,23 @@ impl<'p> Compiled<'p> {
 
 impl Probe for Compiled<'_> {
     fn value(&mut self, p: Vec3) -> f32 {
-        self.values.value(v3(p.x, p.y, p.z))
+        match &self.inside {
+            Some(inside) if self.is_inside => {
+                Point::<f32>::new(inside.values()).value(v3(p.x, p.y, p.z))
+            }
+            _ => self.values.value(v3(p.x, p.y, p.z)),
+        }
+    }
+
+    fn enter(&mut self, clear: bool) {
+        self.is_inside = clear;
     }
 
     fn gradient(&mut self, p: Vec3) -> Vec3 {
+        if let Some(inside) = self.inside.as_ref().filter(|_| self.is_inside) {
+            let mut gradients = Point::<Dual<f32>>::new(inside.values());
+            return Vec3::from(gradients.value(Dual::point(v3(p.x, p.y, p.z))).d);
+        }
         Vec3::from(self.gradients.value(Dual::point(v3(p.x, p.y, p.z))).d)
     }
 
@@ -66,10 +87,15 @@ impl Probe for Compiled<'_> {
             Ok(mark) => return *mark,
             Err(work) => work,
         };
+        let sided = self
+            .is_inside
+            .then(|| self.program.inside_marks())
+            .flatten();
+        let program = sided.as_ref().unwrap_or(self.program);
         for (lane, c) in work.points_mut().iter_mut().zip(p.to_array()) {
             lane.0.fill(c);
         }
-        zeroset_number::at_level!(Level::new(), s => zeroset_eval::marks(s, self.program.marks(), work, 1));
+        zeroset_number::at_level!(Level::new(), s => zeroset_eval::marks(s, program.marks(), work, 1));
         let m = work.marks();
         Mark {
             object: m.object.0[0],

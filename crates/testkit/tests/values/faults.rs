@@ -187,7 +187,7 @@ fn faults_in_scenes_are_noticed() {
 
 /// What is wrong, in the text of which shader how, and the check that must notice. Formulas are recorded from those of the CPU:
 /// these faults are in how shaders call them, or in their numbers.
-const IN_SHADERS: [(&str, &str, &str, &str); 22] = [
+const IN_SHADERS: [(&str, &str, &str, &str); 28] = [
     (
         "a closest place behind the second sample",
         "closest_shadow(f, z, r, t, sharpness)",
@@ -298,15 +298,51 @@ const IN_SHADERS: [(&str, &str, &str, &str); 22] = [
     ),
     (
         "half a vector towards nobody",
-        "at.normal, at.direction, shininess)",
-        "at.normal, -at.direction, shininess)",
+        "at.normal, at.direction, light_finish(what))",
+        "at.normal, -at.direction, light_finish(what))",
         "Phong's light",
     ),
     (
         "plastic that mirrors as glass that is not there",
-        " * 0.04f;",
-        " * 0.0f;",
+        " * 0.16f",
+        " * 0.0f",
         "mirrors",
+    ),
+    (
+        "Fresnel's law for a ray on the other side",
+        "select(body.ior, 1.0 / body.ior, inside)",
+        "select(1.0 / body.ior, body.ior, inside)",
+        "a ball of glass",
+    ),
+    (
+        "a border that lets through what it reflects",
+        "clear * (1.0 - met.w)",
+        "clear * met.w",
+        "a ball of glass",
+    ),
+    (
+        "light that loses nothing inside",
+        "weight *= transmittance(body.attenuation, t);",
+        "weight *= transmittance(body.attenuation, 0.5 * t);",
+        "what a tint leaves",
+    ),
+    (
+        "a clear block without an end where it stands",
+        "march_side = select(1.0, -1.0, path.medium >= 0.0);",
+        "march_side = 1.0;",
+        "a clear block on a table",
+    ),
+    (
+        "a reflection that is met twice",
+        "first.colour += path.weight * found.colour;",
+        "first.colour += 2.0 * path.weight * found.colour;",
+        "what a mirror shows",
+    ),
+    (
+        "mirrors that hide nothing of each other",
+        "answer.y * power * shone",
+        "1.3 * answer.y * power * shone",
+        "highlights of small mirrors",
     ),
     (
         "a filter without its negative parts",
@@ -316,8 +352,8 @@ const IN_SHADERS: [(&str, &str, &str, &str); 22] = [
     ),
     (
         "parallel rays that spread",
-        "frame.right, frame.up, frame.eye), -frame.back);",
-        "frame.right, frame.up, frame.eye), normalize(0.1 * (frame.right * q.x + frame.up * q.y) - frame.back));",
+        "frame.right, frame.up, frame.eye), -frame.back, 1.0, 0.0);",
+        "frame.right, frame.up, frame.eye), normalize(0.1 * (frame.right * q.x + frame.up * q.y) - frame.back), 1.0, 0.0);",
         "balls in parallel rays",
     ),
 ];

@@ -102,7 +102,7 @@ fn glow(draw: Draw) -> Found {
         "show(box(4), material(color = \"black\", specular = 0, roughness = 1, emission = {}, strength = 1.5))\nsun()",
         rgb(LAMP)
     );
-    for shading in ["phong", "lambert", "lambert_legacy"] {
+    for shading in ["physical", "phong", "lambert", "lambert_legacy"] {
         let choices = format!("aa = none(), ao = none(), shading = \"{shading}\"");
         let film = draw(&with(&text, &eye, &choices));
         compare(&film, &eye, Plane::Colour, 1e-3, |_, _| {

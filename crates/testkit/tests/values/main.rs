@@ -17,6 +17,7 @@ mod pattern;
 mod shadow;
 mod sky;
 mod triplanar;
+mod ways;
 
 use known::Check;
 use zeroset::gpu::testing;
@@ -28,7 +29,7 @@ use zeroset_testkit::plain::{self, Compiled, Quality};
 
 /// Every check.
 fn checks() -> Vec<Check> {
-    let groups: [&[Check]; 7] = [
+    let groups: [&[Check]; 8] = [
         &camera::CHECKS,
         &film::CHECKS,
         &light::CHECKS,
@@ -36,6 +37,7 @@ fn checks() -> Vec<Check> {
         &shadow::CHECKS,
         &sky::CHECKS,
         &triplanar::CHECKS,
+        &ways::CHECKS,
     ];
     groups.concat()
 }

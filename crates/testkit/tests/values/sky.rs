@@ -1,7 +1,8 @@
 //! The sky: what is behind everything, what comes of it to a surface, and its mirror image.
 
-use crate::known::{Check, Draw, Eye, Found, Lens, SIZE, ball, compare, light, rgb, scene};
+use crate::known::{Check, Draw, Eye, Found, Lens, SIZE, ball, compare, light, rgb, scene, with};
 use glam::DVec3;
+use std::f64::consts::TAU;
 use zeroset::scene::film::Plane;
 
 pub const CHECKS: [Check; 5] = [
@@ -27,19 +28,37 @@ pub const CHECKS: [Check; 5] = [
     },
 ];
 
-const TOP: [f64; 3] = [0.1, 0.3, 0.9];
-const HORIZON: [f64; 3] = [0.9, 0.8, 0.4];
-const BOTTOM: [f64; 3] = [0.5, 0.1, 0.2];
+pub const TOP: [f64; 3] = [0.1, 0.3, 0.9];
+pub const HORIZON: [f64; 3] = [0.9, 0.8, 0.4];
+pub const BOTTOM: [f64; 3] = [0.5, 0.1, 0.2];
 
-fn line(ambient: f64) -> String {
+pub fn line(ambient: f64) -> String {
     let [top, horizon, bottom] = [TOP, HORIZON, BOTTOM].map(rgb);
     format!("sky(top = {top}, horizon = {horizon}, bottom = {bottom}, ambient = {ambient})\n")
 }
 
-/// The horizon, and from there by the root of the sine of the height to what is straight up or down: half way at a quarter.
-fn along(y: f64) -> DVec3 {
+/// The horizon, and from there to what is straight up or down, about half way at a sine of 0.35.
+pub fn along(y: f64) -> DVec3 {
     let far = if y < 0.0 { BOTTOM } else { TOP };
-    light(HORIZON).lerp(light(far), y.abs().sqrt())
+    light(HORIZON).lerp(light(far), y * y * 1.1225 / (y * y + 0.1225))
+}
+
+/// What arrives at a surface whose normal has this height: the mean of the sky by the cosine law, summed up.
+fn arriving(height: f64) -> DVec3 {
+    let n = DVec3::new((1.0 - height * height).sqrt(), height, 0.0);
+    let (rings, turns) = (64, 64);
+    let (mut sum, mut all) = (DVec3::ZERO, 0.0);
+    for i in 0..rings {
+        let y = (f64::from(i) + 0.5) / f64::from(rings) * 2.0 - 1.0;
+        for k in 0..turns {
+            let phi = (f64::from(k) + 0.5) / f64::from(turns) * TAU;
+            let r = (1.0 - y * y).sqrt();
+            let cosine = n.dot(DVec3::new(r * phi.cos(), y, r * phi.sin())).max(0.0);
+            sum += cosine * along(y);
+            all += cosine;
+        }
+    }
+    sum / all
 }
 
 /// A camera that sees what is above and what is below.
@@ -103,15 +122,17 @@ fn even(draw: Draw) -> Found {
     let eye = near();
     let sky = format!("sky(color = {}, ambient = 0.6)", rgb(TOP));
     let material = format!("color = {}, roughness = 1", rgb(ALBEDO));
-    let film = draw(&scene(&before(&material, &sky), &eye));
+    let film = draw(&with(&before(&material, &sky), &eye, MATTE));
     let right = light(ALBEDO) * light(TOP) * 0.6;
     compare(&film, &eye, Plane::Colour, 1e-3, |x, y| {
         on_ball(&eye, x, y).map(|_| right)
     })
 }
 
-/// A surface that faces up sees what lies between top and horizon, one that faces down what lies between bottom and horizon,
-/// and between them it changes evenly with the height of the normal.
+/// Matte surfaces alone.
+const MATTE: &str = "aa = none(), ao = none(), shading = \"phong\"";
+
+/// A surface sees the sky over it, by the cosine law.
 fn ambient(draw: Draw) -> Found {
     let material = format!("color = {}, roughness = 1", rgb(ALBEDO));
     let text = before(&material, &line(0.8));
@@ -120,20 +141,18 @@ fn ambient(draw: Draw) -> Found {
             at: DVec3::new(0.5, side, 2.5),
             ..near()
         };
-        let film = draw(&scene(&text, &eye));
+        let film = draw(&with(&text, &eye, MATTE));
         let right = |x, y| {
             let (n, ..) = on_ball(&eye, x, y)?;
-            let [top, horizon, bottom] = [TOP, HORIZON, BOTTOM].map(light);
-            let (up, down) = (0.5 * (top + horizon), 0.5 * (bottom + horizon));
-            Some(light(ALBEDO) * 0.8 * down.lerp(up, 0.5 + 0.5 * n.y))
+            Some(light(ALBEDO) * 0.8 * arriving(n.y))
         };
-        compare(&film, &eye, Plane::Colour, 3e-3, right)?;
+        compare(&film, &eye, Plane::Colour, 4e-3, right)?;
     }
     Ok(())
 }
 
 /// A smooth metal shows the sky along the mirror direction in its colour, whiter the more it is grazed (Schlick 1994), and a
-/// smooth plastic 4 % of it over its own colour.
+/// smooth plastic 4 % of it over what is left for its own colour.
 fn mirrors(draw: Draw) -> Found {
     let eye = near();
     for metallic in [0.0, 1.0] {
@@ -147,8 +166,8 @@ fn mirrors(draw: Draw) -> Found {
             let mirrored = along((d + n * 2.0 * cosine).y);
             let straight = light(ALBEDO) * metallic + DVec3::splat(0.04 * (1.0 - metallic));
             let share = straight.lerp(DVec3::ONE, (1.0 - cosine).powi(5));
-            let [top, horizon, bottom] = [TOP, HORIZON, BOTTOM].map(light);
-            let around = (0.5 * (bottom + horizon)).lerp(0.5 * (top + horizon), 0.5 + 0.5 * n.y);
+            // what is not mirrored comes to the body below
+            let around = (DVec3::ONE - share) * arriving(n.y);
             Some(share * mirrored + light(ALBEDO) * around * 0.8 * (1.0 - metallic))
         };
         compare(&film, &eye, Plane::Colour, 0.01, right)

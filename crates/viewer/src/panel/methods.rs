@@ -24,6 +24,7 @@ pub fn methods(ui: &mut Ui, session: &mut Session) {
         hits(ui, &mut look.settings);
     });
     section(ui, "Light and shadow", false, |ui| {
+        choose(ui, "Integrator", &mut look.settings.integrator);
         choose(ui, "Shading", &mut look.settings.shading);
         choose_or(ui, "Shadow", "As each light has it", &mut look.shadow);
     });

@@ -1,0 +1,121 @@
+//! Rays that go on from hits, and what the light is worth that they bring.
+
+use crate::ray::{Common, Queue, WideRay};
+use crate::simd::TILE_RAYS;
+use crate::tile::Solid;
+use zeroset_number::{Vec3, v3};
+
+/// A ray that goes on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PathRay {
+    pub(crate) ray: WideRay<f32>,
+    pub(crate) state: PathState,
+}
+
+/// What is known of the way from the eye to where a ray begins.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PathState {
+    /// Number of the pixel in its tile.
+    pub(crate) pixel: usize,
+    /// The share of the light along the ray that comes to the eye.
+    pub(crate) weight: Vec3<f32>,
+    /// Reflections on the way.
+    pub(crate) reflections: u32,
+    /// Surfaces of clear bodies that were passed, or met from inside.
+    pub(crate) refractions: u32,
+    /// The material of the clear body that the ray is in, by number.
+    pub(crate) medium: Option<f32>,
+}
+
+/// The rays that go on in a tile.
+pub(crate) struct Paths {
+    /// Those of the queue, in its order; none where it holds those from the eye.
+    followed: Vec<PathRay>,
+    /// Those to come, outside and inside of clear bodies. The last come first: so there are never many.
+    waiting: [Vec<PathRay>; 2],
+    /// Which of the queue met a surface.
+    met: Vec<bool>,
+}
+
+impl Paths {
+    pub(crate) fn new() -> Paths {
+        Paths {
+            followed: Vec::with_capacity(TILE_RAYS),
+            waiting: [(); 2].map(|()| Vec::with_capacity(TILE_RAYS)),
+            met: vec![false; TILE_RAYS],
+        }
+    }
+
+    /// The queue holds rays from the eye, and none goes on yet.
+    pub(crate) fn begin(&mut self) {
+        self.followed.clear();
+        self.waiting.iter_mut().for_each(Vec::clear);
+    }
+
+    /// The state of a ray of the queue.
+    pub(crate) fn state(&self, number: usize) -> PathState {
+        (self.followed.get(number)).map_or(PathState::from_eye(number), |path| path.state)
+    }
+
+    /// Number of the pixel of a ray of the queue.
+    pub(crate) fn pixel(&self, number: usize) -> usize {
+        self.followed
+            .get(number)
+            .map_or(number, |path| path.state.pixel)
+    }
+
+    /// A ray that is to be followed.
+    pub(crate) fn push(&mut self, path: PathRay) {
+        self.waiting[usize::from(path.state.medium.is_some())].push(path);
+    }
+
+    /// Fills the queue with rays that wait, as many as it holds, all of them inside clear bodies or none. Gives whether they are inside;
+    /// none where no ray waits.
+    pub(crate) fn next(&mut self, solid: &Solid<'_>, queue: &mut Queue) -> Option<bool> {
+        let inside = self.waiting[1].len() > self.waiting[0].len();
+        let waiting = &mut self.waiting[usize::from(inside)];
+        let from = waiting.len().saturating_sub(TILE_RAYS);
+        self.followed.clear();
+        self.followed.extend(waiting.drain(from..));
+        queue.count = 0;
+        queue.common = Common::default();
+        let reach = solid.view.threshold;
+        for PathRay { ray, .. } in &self.followed {
+            let end = solid
+                .region
+                .leave(
+                    ray.origin,
+                    ray.direction,
+                    reach.slope,
+                    reach.at(ray.travelled),
+                )
+                .min(solid.view.far);
+            queue.push(ray, 0.0, end);
+        }
+        self.met[..queue.count].fill(false);
+        (queue.count > 0).then_some(inside)
+    }
+
+    /// That a ray of the queue met a surface.
+    pub(crate) fn meets(&mut self, number: usize) {
+        self.met[number] = true;
+    }
+
+    /// The rays of the queue that met nothing.
+    pub(crate) fn missed(&self) -> impl Iterator<Item = &PathRay> {
+        (self.followed.iter().zip(&self.met)).filter_map(|(path, met)| (!met).then_some(path))
+    }
+}
+
+impl PathState {
+    /// That of a ray from the eye.
+    fn from_eye(pixel: usize) -> PathState {
+        PathState {
+            pixel,
+            weight: v3(1.0, 1.0, 1.0),
+            reflections: 0,
+            refractions: 0,
+            medium: None,
+        }
+    }
+}
