@@ -41,14 +41,17 @@ pub fn visible_normal<R: Real>(n: Vec3<R>, v: Vec3<R>, alpha: R, u: [R; 2]) -> V
     a * h.x + b * h.y + n * h.z
 }
 
+/// Smith's function of what mirrors hide, over what they show (Walter et al. 2007; Heitz 2014, equation 72).
+#[inline(always)]
+fn hidden<R: Real>(cosine: R, alpha: R) -> R {
+    let c2 = cosine.sq().max(1e-8);
+    ((alpha.sq() * (c2.recip() - 1.0) + 1.0).max(1.0).sqrt() - 1.0) * 0.5
+}
+
 /// The share of the mirrors that the eye sees that is not hidden from the light: both by height (Heitz 2014).
 #[inline(always)]
 fn seen_share<R: Real>(to_eye: R, to_light: R, alpha: R) -> R {
-    let lambda = |c: R| {
-        let c2 = c.sq().max(1e-8);
-        ((alpha.sq() * (c2.recip() - 1.0) + 1.0).max(1.0).sqrt() - 1.0) * 0.5
-    };
-    let (eye, light) = (lambda(to_eye), lambda(to_light));
+    let (eye, light) = (hidden(to_eye, alpha), hidden(to_light, alpha));
     (eye + 1.0) / (eye + light + 1.0)
 }
 
@@ -69,12 +72,7 @@ pub fn scatter<R: Real>(
     let zero = cosine.lit(0.0);
     let clear = what.transmission * what.metallic.one_minus();
     let mirrors = mirrored(what, cosine);
-    let plain = LocalMaterial {
-        metallic: zero,
-        ..*what
-    };
-    let left = mirrored(&plain, cosine).all.x.one_minus() * what.metallic.one_minus();
-    let body = what.albedo * (left * what.transmission.one_minus());
+    let body = what.albedo * (mirrors.left * what.transmission.one_minus());
     // how often each is chosen
     let opaque = clear.one_minus();
     let (w_body, w_mirror) = (luminance_of(body), luminance_of(mirrors.all) * opaque);

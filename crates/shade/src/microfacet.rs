@@ -22,13 +22,17 @@ pub fn distribution<R: Real>(n: Vec3<R>, h: Vec3<R>, alpha: R) -> R {
     alpha2 / (spread.sq() * std::f32::consts::PI).max(1e-30)
 }
 
+#[inline(always)]
+fn stretched<R: Real>(cosine: R, alpha2: R) -> R {
+    (cosine.sq() * alpha2.one_minus() + alpha2).sqrt()
+}
+
 /// The share of mirrors that neither the eye nor the light is hidden from, over four times both cosines (Heitz 2014, equation 99,
 /// correlated by height).
 #[inline(always)]
 pub fn visibility<R: Real>(to_light: R, to_eye: R, alpha: R) -> R {
     let alpha2 = alpha.sq();
-    let of = |c: R| (c.sq() * alpha2.one_minus() + alpha2).sqrt();
-    let sum = to_light * of(to_eye) + to_eye * of(to_light);
+    let sum = to_light * stretched(to_eye, alpha2) + to_eye * stretched(to_light, alpha2);
     (sum * 2.0).max(1e-20).recip()
 }
 
@@ -66,21 +70,29 @@ pub fn single<R: Real>(cosine: R, roughness: R) -> R {
     // the surface looks smooth where the cosine is large beside the width of the distribution
     let c = cosine.clamp(1e-4, 1.0);
     let s = c / (c + alpha(roughness) * 0.7);
-    let r = roughness;
-    let row = |k: [f32; 6]| ((((s * k[5] + k[4]) * s + k[3]) * s + k[2]) * s + k[1]) * s + k[0];
-    let rows = [
-        row([
-            0.336_21, -0.921_5, 8.526_87, -18.204_47, 18.074_9, -6.811_57,
-        ]),
-        row([6.364_06, -5.117_36, -9.973_5, 11.219, -2.530_19, 0.0]),
-        row([-20.531_51, 19.514_15, 7.157_1, -6.698_52, 0.0, 0.0]),
-        row([30.893_28, -25.698_51, 0.387_85, 0.0, 0.0, 0.0]),
-        row([-22.153_27, 9.882_08, 0.0, 0.0, 0.0, 0.0]),
-    ];
-    let sum =
-        (((((r * 6.069_5 + rows[4]) * r + rows[3]) * r + rows[2]) * r) + rows[1]) * r + rows[0];
+    let mut sum = s.lit(0.0);
+    // Horner's scheme, over the roughness and within over s
+    for row in SINGLE.iter().rev() {
+        let mut inner = s.lit(0.0);
+        for k in row.iter().rev() {
+            inner = inner * s + *k;
+        }
+        sum = sum * roughness + inner;
+    }
     sum.clamp(0.25, 1.0)
 }
+
+/// A polynomial in s and the roughness, for each power of the roughness the factors of the powers of s.
+const SINGLE: [&[f32]; 6] = [
+    &[
+        0.336_21, -0.921_5, 8.526_87, -18.204_47, 18.074_9, -6.811_57,
+    ],
+    &[6.364_06, -5.117_36, -9.973_5, 11.219, -2.530_19],
+    &[-20.531_51, 19.514_15, 7.157_1, -6.698_52],
+    &[30.893_28, -25.698_51, 0.387_85],
+    &[-22.153_27, 9.882_08],
+    &[6.069_5],
+];
 
 /// What [`schlick`] is in the mean over the mirrors that an eye at this cosine sees (the form is Schüler's, fitted to the same integral
 /// as [`single`], with an error below 0.03).

@@ -79,19 +79,25 @@ pub struct Mirrored<R> {
     pub again: Vec3<R>,
     /// How much of the light from everywhere is reflected in all.
     pub all: Vec3<R>,
+    /// What comes to a matte body below the mirrors, all colours alike: what they would leave if none of it were metal, and nothing of the
+    /// share that is metal.
+    pub left: R,
 }
 
 /// What the mirrors of a surface reflect to an eye at this cosine.
 #[inline(always)]
 pub fn mirrored<R: Real>(what: &LocalMaterial<R>, cosine: R) -> Mirrored<R> {
     let clear = (what.specular * (DIELECTRIC / USUAL_SPECULAR)).min(1.0);
+    let clear_edge = (clear * (1.0 / LEAST_NATURAL)).min(1.0);
     let dull = what.metallic.one_minus();
     let straight = what.albedo * what.metallic + Vec3::splat(clear * dull);
-    let edge = (clear * (1.0 / LEAST_NATURAL)).min(1.0) * dull + what.metallic;
+    let edge = clear_edge * dull + what.metallic;
     let rise = mean_schlick(cosine, what.roughness);
     let once = single(cosine, what.roughness);
-    let again = straight * (once.one_minus() / once) + Vec3::splat(once.lit(1.0));
+    let more = once.recip() - 1.0;
+    let again = straight * more + Vec3::splat(once.lit(1.0));
     let mean = straight * rise.one_minus() + Vec3::splat(rise * edge);
+    let clear_all = (clear * rise.one_minus() + clear_edge * rise) * (clear * more + 1.0) * once;
     Mirrored {
         straight,
         edge,
@@ -100,6 +106,7 @@ pub fn mirrored<R: Real>(what: &LocalMaterial<R>, cosine: R) -> Mirrored<R> {
             #[inline(always)]
             |x| x.min(1.0),
         ),
+        left: clear_all.min(1.0).one_minus() * dull,
     }
 }
 
@@ -153,13 +160,7 @@ fn physical<R: Real>(
     let mirrors = mirrored(what, cosine);
     let highlight =
         mirrors.straight.times(light.gloss - light.grazing) + light.grazing * mirrors.edge;
-    // what the mirrors of a body that is no metal leave, all colours alike
-    let clear = LocalMaterial {
-        metallic: facing.lit(0.0),
-        ..*what
-    };
-    let left = mirrored(&clear, cosine).all.x.one_minus() * what.metallic.one_minus();
-    let body = matte(sky, what, light) * (left * what.transmission.one_minus());
+    let body = matte(sky, what, light) * (mirrors.left * what.transmission.one_minus());
     let mirror = d + n * (facing * 2.0);
     let seen = reflected_visibility(light.open, cosine, what.roughness) * followed.one_minus();
     let around = glossy(sky, mirror.y, what.roughness) * seen;

@@ -78,13 +78,18 @@ impl Integrator for Whitted {
             shade(s, sample, q);
             return;
         }
-        for i in 0..q.hits.count {
-            q.hits.followed[i] = self.go_on(sample, q, i);
+        q.hits.followed[..q.hits.count].fill(0.0);
+        if sample.job.picture.goes_on {
+            for i in 0..q.hits.count {
+                q.hits.followed[i] = self.go_on(sample, q, i);
+            }
         }
         light(s, sample, q);
         shade(s, sample, q);
-        for i in 0..q.hits.count {
-            lose(sample, q, i);
+        if sample.job.picture.goes_on {
+            for i in 0..q.hits.count {
+                lose(sample, q, i);
+            }
         }
     }
 }
@@ -94,6 +99,9 @@ impl Whitted {
     fn go_on(&self, sample: &TileSample<'_>, q: &mut Scratch, i: usize) -> f32 {
         let (hits, number) = (&q.hits, (q.hits.word[i] & ORDINAL) as usize);
         let inside = hits.word[i] & INSIDE != 0;
+        if !hits.material.goes_on(i) {
+            return 0.0;
+        }
         let what = hits.material.get(i);
         let clear = what.transmission * (1.0 - what.metallic);
         let smooth = followed_share(what.roughness);

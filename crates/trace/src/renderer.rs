@@ -26,6 +26,7 @@ use zeroset_scene::render::{Evaluations, Observer, Prepared, RenderError, Render
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Occlusion};
 use zeroset_shade::skin::has_skins;
+use zeroset_shade::surface::BLURRED;
 use zeroset_shade::view::Region;
 
 /// The CPU's renderer: sphere tracing in SIMD streams, over all threads that it is given. Clones share their threads.
@@ -144,6 +145,8 @@ pub struct PreparedScene {
     pub(crate) material: Option<u16>,
     /// The only object there is, if there is only one.
     pub(crate) object: Option<u16>,
+    /// Whether rays go on from any material.
+    pub(crate) goes_on: bool,
     /// Whether a material is coloured by the orbits of fractals.
     pub(crate) has_orbits: bool,
     /// Occlusion methods that objects chose, each once; the first is the scene's.
@@ -194,7 +197,10 @@ impl PreparedScene {
         }
         let has_orbits =
             (scene.materials().iter()).any(|m| matches!(m.pattern, Pattern::Orbit { .. }));
+        let goes_on =
+            (scene.materials().iter()).any(|m| m.roughness < BLURRED || m.transmission > 0.0);
         PreparedScene {
+            goes_on,
             renderer,
             skins: has_skins(&scene, &program),
             scene,

@@ -10,7 +10,7 @@ use zeroset_scene::material::Material;
 use zeroset_scene::settings::Shading;
 use zeroset_shade::march::MARKS_BEHIND;
 use zeroset_shade::pattern::{Place, colour as pattern_colour};
-use zeroset_shade::surface::LocalMaterial;
+use zeroset_shade::surface::{BLURRED, LocalMaterial};
 
 impl Job<'_> {
     pub(crate) fn material(&self, number: f32) -> &Material {
@@ -227,6 +227,11 @@ impl MaterialColumns {
     /// Shows clear bodies as if they were none.
     pub(crate) fn make_opaque(&mut self, count: usize) {
         self.transmission[..count].fill(0.0);
+    }
+
+    /// Whether rays may go on from number `i`.
+    pub(crate) fn goes_on(&self, i: usize) -> bool {
+        self.roughness[i] < BLURRED || self.transmission[i] > 0.0
     }
 
     /// What number `i` is made of.
