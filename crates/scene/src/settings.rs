@@ -231,6 +231,14 @@ choice! {
             /// How often a ray passes the surface of a clear body, or is reflected within it.
             refractions: u32 = 8, BOUNCES
         },
+        /// All ways, one of many chosen at random at each surface: the picture that the others are near to.
+        Path("path", "Path tracing", "Kajiya 1986; Keinert et al. 2014, 4; Burley 2020") {
+            /// Surfaces that light meets on its way, at most.
+            depth: u32 = 10, Param::new("Depth", Unit::Count, Allowed::between(1.0, 1000.0)).usual(1.0, 32.0).logarithmic();
+            /// The most that light counts which was scattered: less noise, and darker where it clamps.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            clamp: Limit = None, Param::new("Clamp", Unit::Ratio, Allowed::above(0.0, 1e6)).usual(0.1, 100.0).logarithmic()
+        },
         /// From lights and sky, reflected once.
         Direct("direct", "Direct light", "Tomczak 2012, 3"),
     }

@@ -4,7 +4,7 @@ use crate::microfacet::{LIGHT_ALPHA, alpha, distribution, schlick, visibility};
 use crate::{each, parameters};
 use zeroset_number::{Real, Vec3};
 use zeroset_scene::light::{Light, Source};
-use zeroset_scene::settings::Shading;
+use zeroset_scene::settings::{Shading, Shadow};
 
 /// Luminance of a linear colour (Rec. 709).
 #[inline(always)]
@@ -48,6 +48,33 @@ pub fn towards<R: Real<Scalar = f32>>(source: &Source, p: Vec3<R>) -> (Vec3<R>, 
         }
         Source::Point { position } => towards_point(parameters(*position), p),
     }
+}
+
+/// The cosine of the angle under which half a light is seen: as wide as the penumbra of its shadow is. 1 where the shadow is hard.
+pub fn width(light: &Light) -> f32 {
+    match light.shadow {
+        Shadow::Soft { sharpness } | Shadow::SoftClosest { sharpness } => {
+            (1.0 + sharpness.powi(-2)).sqrt().recip()
+        }
+        Shadow::Hard | Shadow::None => 1.0,
+    }
+}
+
+/// The light of all suns that are seen in a direction: discs as wide as the penumbrae of their shadows, so bright that a white surface that
+/// faces one is as bright as the light says. Those without a width are not seen.
+pub fn discs(lights: &[Light], direction: Vec3<f32>) -> Vec3<f32> {
+    let mut sum = Vec3::splat(0.0);
+    for light in lights {
+        let Source::Directional { direction: way } = light.source else {
+            continue;
+        };
+        let cosine = width(light);
+        if cosine < 1.0 && -parameters(way).dot(direction) > cosine {
+            // pi over the solid angle
+            sum = sum + parameters(light.radiance) * (0.5 / (1.0 - cosine));
+        }
+    }
+    sum
 }
 
 /// Inverse squares, relative to a distance of 1.
@@ -177,7 +204,6 @@ mod tests {
     use super::*;
     use glam::Vec3 as G;
     use zeroset_number::v3;
-    use zeroset_scene::settings::Shadow;
 
     #[test]
     fn lights_follow_their_laws() {

@@ -64,6 +64,43 @@ pub fn point(index: u32, scramble: [u32; 2]) -> [f32; 2] {
     [unit(x ^ scramble[0]), unit(y ^ scramble[1])]
 }
 
+/// A hash of a number whose bit k depends on lower bits alone: reversed, it exchanges the halves of an interval, the quarters in them and
+/// so on at random, as Owen (1995) scrambles (Laine and Karras 2011, with the constants of Burley 2020).
+#[inline(always)]
+fn laine_karras(x: u32, seed: u32) -> u32 {
+    let mut x = x.wrapping_add(seed);
+    x ^= x.wrapping_mul(0x6c50_b47c);
+    x ^= x.wrapping_mul(0xb82f_1e52);
+    x ^= x.wrapping_mul(0xc7af_e638);
+    x ^ x.wrapping_mul(0x8d22_f6e6)
+}
+
+#[inline(always)]
+fn owen(x: u32, seed: u32) -> u32 {
+    laine_karras(x.reverse_bits(), seed).reverse_bits()
+}
+
+/// Sample number `index` of a pixel for a decision of its own, in [0, 1) by [0, 1): as evenly spread as [`point`] is, and independent of
+/// what other decisions of the pixel get, whose number `decision` is another (Burley 2020: shuffled and scrambled as Owen does).
+#[inline(always)]
+pub fn decided(index: u32, key: [u32; 2], decision: u32) -> [f32; 2] {
+    let [a, b] = scramble(key[0], key[1], decision);
+    let [c, _] = scramble(key[1], key[0], !decision);
+    // shuffled within every block of 2^k samples
+    let [x, y] = sobol(owen(index, c));
+    [unit(owen(x, a)), unit(owen(y, b))]
+}
+
+/// A direction around `axis` within a cone whose angle has this cosine, spread evenly, from a point of the unit square.
+#[inline(always)]
+pub fn cone_direction<R: Real>(axis: Vec3<R>, cosine: R, u: R, v: R) -> Vec3<R> {
+    let (sin, cos) = (v * std::f32::consts::TAU).sin_cos();
+    let z = (cosine.one_minus() * u).one_minus();
+    let r = z.sq().one_minus().max(0.0).sqrt();
+    let [a, b] = basis(axis);
+    a * (r * cos) + b * (r * sin) + axis * z
+}
+
 /// A direction around `normal`, spread by the cosine law, from a point of the unit square.
 #[inline(always)]
 pub fn cosine_direction<R: Real>(normal: Vec3<R>, u: R, v: R) -> Vec3<R> {
@@ -132,6 +169,37 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    #[test]
+    fn decisions_are_stratified_and_independent() {
+        let n = 64u32;
+        for decision in 0..40 {
+            let mut taken = vec![false; n as usize];
+            for i in 0..n {
+                let [x, y] = decided(i, [11, 5], decision);
+                let cell = &mut taken[((y * 8.0) as u32 * 8 + (x * 8.0) as u32) as usize];
+                assert!(!*cell, "two samples in one of {n} cells");
+                *cell = true;
+            }
+        }
+        // correlation of every two decisions over many samples
+        let n = 4096u32;
+        for pair in 0..30 {
+            let sum: f32 = (0..n)
+                .map(|i| {
+                    let [a, _] = decided(i, [7, 9], pair);
+                    let [b, c] = decided(i, [7, 9], pair + 1);
+                    (a - 0.5) * (b - 0.5) + (a - 0.5) * (c - 0.5)
+                })
+                .sum();
+            // of independent numbers it has a standard deviation of 1 / (12 root n), of each of two
+            let correlation = 12.0 * sum / n as f32;
+            assert!(
+                correlation.abs() < 6.0 / (n as f32).sqrt(),
+                "{pair}: {correlation}"
+            );
         }
     }
 

@@ -10,7 +10,9 @@ use zeroset_shade::pattern::{self, Place};
 use zeroset_shade::sky::{self, SkyColours};
 use zeroset_shade::surface::{self, Lighting, LocalMaterial};
 use zeroset_shade::view::{self, Linear};
-use zeroset_shade::{light, march, normal, occlusion, sampling, secondary, shadow, skin, tone};
+use zeroset_shade::{
+    bsdf, light, march, normal, occlusion, sampling, secondary, shadow, skin, tone,
+};
 
 /// A formula that shaders call.
 pub(crate) struct Formula {
@@ -219,6 +221,18 @@ formulas! {
         let border = surface::refraction(direction, normal, ior);
         (border.direction, border.reflected)
     };
+    fn scatter_way(albedo: Vec3, finish: Vec4, normal: Vec3, direction: Vec3, ior: Number, choice: Vec3) = {
+        let what = material(albedo, albedo, finish);
+        let way = bsdf::scatter(&what, normal, direction, ior, albedo, choice.array());
+        (way.direction, way.lobe + way.through * 4.0)
+    };
+    fn scatter_weight(
+        albedo: Vec3, finish: Vec4, normal: Vec3, direction: Vec3, ior: Number, tint: Vec3, choice: Vec3
+    ) = {
+        let what = material(albedo, albedo, finish);
+        bsdf::scatter(&what, normal, direction, ior, tint, choice.array()).weight
+    };
+    fn cone_around(axis: Vec3, cosine: Number, u: Vec2) = sampling::cone_direction(axis, cosine, u.x, u.y);
     fn transmittance(attenuation: Vec3, t: Number) = surface::transmittance(attenuation, t);
 
     // shadows

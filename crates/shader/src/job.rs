@@ -280,6 +280,10 @@ fn frame(scene: &Scene, region: &Region) -> Frame {
     let settings = scene.settings();
     let sky = scene.sky();
     let [reflections, refractions] = bounces(settings).unwrap_or_default();
+    let (depth, clamp) = match settings.integrator {
+        Integrator::Path { depth, clamp } => (depth, clamp),
+        Integrator::Whitted { .. } | Integrator::Direct => (0, None),
+    };
     let frame = Frame {
         region_min: region.min,
         region_max: region.max,
@@ -296,6 +300,8 @@ fn frame(scene: &Scene, region: &Region) -> Frame {
         placing: settings.discontinuity_reduction,
         reflections,
         refractions,
+        depth,
+        clamp: clamp.unwrap_or(UNLIMITED),
         seed: settings.seed,
         sky_top: sky.top.to_array(),
         ambient: sky.ambient,
@@ -308,7 +314,7 @@ fn frame(scene: &Scene, region: &Region) -> Frame {
     seen(frame, scene.camera(), settings.size, settings.antialias)
 }
 
-/// How often rays are reflected, and how often they pass or meet from inside the surface of a clear body; none where rays do not go on.
+/// How often rays are reflected, and how often they pass or meet from inside the surface of a clear body; none where they are not.
 pub(crate) fn bounces(settings: &Settings) -> Option<[u32; 2]> {
     match (settings.shading, settings.integrator) {
         (
@@ -318,7 +324,7 @@ pub(crate) fn bounces(settings: &Settings) -> Option<[u32; 2]> {
                 refractions,
             },
         ) => Some([reflections, refractions]),
-        (_, Integrator::Whitted { .. } | Integrator::Direct) => None,
+        (_, Integrator::Whitted { .. } | Integrator::Path { .. } | Integrator::Direct) => None,
     }
 }
 
@@ -394,7 +400,8 @@ fn tables(
     let places: HashMap<*const Image, u64> = (images.iter().map(Arc::as_ptr))
         .zip(texture::starts(images))
         .collect();
-    let clear = bounces(scene.settings()).is_some();
+    let is_path = matches!(scene.settings().integrator, Integrator::Path { .. });
+    let clear = is_path || bounces(scene.settings()).is_some();
     for material in scene.materials().iter().chain([&fallback]) {
         let place = image(&material.pattern).and_then(|image| places.get(&Arc::as_ptr(image)));
         push(

@@ -163,12 +163,12 @@ shared! {
         reflections: u32,
         /// How often a ray passes the surface of a clear body, or is reflected within it.
         refractions: u32,
+        /// Surfaces that light meets on its way, at most, where one way of many is followed.
+        depth: u32,
+        /// The most that the light counts of a ray that went on.
+        clamp: f32,
         /// Not used.
-        pad_a: u32,
-        /// Not used.
-        pad_b: u32,
-        /// Not used.
-        pad_c: u32,
+        pad: u32,
     }
 
     /// What one dispatch covers.

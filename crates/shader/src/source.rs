@@ -20,7 +20,9 @@ use zeroset_field::program::{Program, Structure};
 use zeroset_scene::material::Pattern;
 use zeroset_scene::methods::Choice;
 use zeroset_scene::scene::Scene;
-use zeroset_scene::settings::{Filter, March, Normals, Occlusion, Shading, Shadow};
+use zeroset_scene::settings::{
+    Filter, Integrator, March, Normals, Occlusion, Settings, Shading, Shadow,
+};
 
 /// The text of a module, and what the module must find.
 pub(crate) struct Text {
@@ -49,6 +51,7 @@ pub(crate) struct Key {
     shading: Shading,
     /// Rays that may wait to be followed: as many as go on one after the other, and one more.
     waiting: u32,
+    ways: &'static [Stage],
     occlusion: BTreeSet<Case>,
     /// Whether any light casts a shadow.
     shadows: bool,
@@ -148,6 +151,7 @@ impl Key {
             normals: normals(scene.settings().normals),
             shading: scene.settings().shading,
             waiting: bounces(scene.settings()).map_or(1, |[a, b]| a + b + 1),
+            ways: ways(scene.settings()),
             occlusion: methods.filter_map(occlusion).collect(),
             shadows: scene.lights().iter().any(|l| casts(&l.shadow)),
             patterns: (scene.materials().iter())
@@ -337,7 +341,7 @@ impl Key {
             include_str!("stage/shade.wgsl"),
             include_str!("stage/trace.wgsl"),
         ];
-        let chosen = self.march.iter().chain(self.normals);
+        let chosen = self.march.iter().chain(self.normals).chain(self.ways);
         stages.extend(chosen.map(|stage| stage.text));
         stages.push(if self.steep {
             include_str!("stage/distance_steep.wgsl")
@@ -359,7 +363,9 @@ impl Key {
 
     /// Whether rays go to lights or over hemispheres.
     fn secondary(&self) -> bool {
-        self.shadows || self.occlusion.iter().any(|case| case.secondary)
+        // paths name the shadows, even where there are none
+        let paths = self.ways.iter().any(|stage| stage.name == "ways_path");
+        paths || self.shadows || self.occlusion.iter().any(|case| case.secondary)
     }
 
     /// The formulas that those stages call.
@@ -375,7 +381,7 @@ impl Key {
         if self.secondary() {
             names.extend(BEAMS);
         }
-        let stages = self.march.iter().chain(self.normals);
+        let stages = self.march.iter().chain(self.normals).chain(self.ways);
         names.extend(stages.flat_map(|stage| stage.formulas));
         let cases = self.occlusion.iter().chain(&self.patterns);
         names.extend(cases.flat_map(|case| case.formulas));
@@ -495,7 +501,7 @@ fn switch<'a>(
 }
 
 /// Formulas that every picture needs.
-const EVERYWHERE: [&str; 23] = [
+const EVERYWHERE: [&str; 20] = [
     "false_position",
     "on_plane",
     "pinhole_ray",
@@ -515,9 +521,6 @@ const EVERYWHERE: [&str; 23] = [
     "footprint_on",
     "sky_colour",
     "towards_point",
-    "mirror_reflectance",
-    "followed_share",
-    "border",
     "transmittance",
 ];
 
@@ -576,6 +579,30 @@ fn marcher(march: &March) -> &'static [Stage] {
         March::Relaxed { .. } => &[stage!("march"), stage!("march_relaxed")],
         March::Enhanced { .. } => &[stage!("march"), stage!("march_enhanced", "planar_step")],
         March::Auto { .. } => &[stage!("march"), stage!("march_auto")],
+    }
+}
+
+/// The stages of the ways that light takes.
+fn ways(settings: &Settings) -> &'static [Stage] {
+    match settings.integrator {
+        Integrator::Whitted { .. } if bounces(settings).is_some() => &[
+            stage!("ways_seen"),
+            stage!(
+                "ways_whitted",
+                "mirror_reflectance",
+                "followed_share",
+                "border"
+            ),
+        ],
+        Integrator::Whitted { .. } | Integrator::Direct => {
+            &[stage!("ways_seen"), stage!("ways_direct")]
+        }
+        Integrator::Path { .. } => &[stage!(
+            "ways_path",
+            "scatter_way",
+            "scatter_weight",
+            "cone_around"
+        )],
     }
 }
 

@@ -12,7 +12,9 @@ use zeroset_language::load::{Language, Options, load, load_text};
 use zeroset_number::Grid;
 use zeroset_scene::material::{Image, Pattern};
 use zeroset_scene::scene::{Scene, SceneParts};
-use zeroset_scene::settings::{Antialias, Filter, March, Normals, Occlusion, Shading, Shadow};
+use zeroset_scene::settings::{
+    Antialias, Filter, Integrator, March, Normals, Occlusion, Shading, Shadow,
+};
 use zeroset_shader::entry::{Binding, ENTRIES};
 use zeroset_shader::export::ExportError;
 use zeroset_shader::layout::{
@@ -94,6 +96,7 @@ show(mandelbulb().move(x = 12), material(color = orbit(center = "red", x = "whit
 fn every_method_has_a_valid_shader() {
     let base = scene("show(sphere(1))");
     let (normals, shadings, shadows) = (Normals::ALL, Shading::ALL, Shadow::ALL);
+    let ways = Integrator::ALL;
     let mut texts = BTreeMap::new();
     let mut count = 0;
     for (i, (march, occlusion)) in (March::ALL
@@ -108,6 +111,7 @@ fn every_method_has_a_valid_shader() {
                 s.settings.occlusion = *occlusion;
                 s.settings.normals = normals[i % normals.len()];
                 s.settings.shading = shadings[i % shadings.len()];
+                s.settings.integrator = ways[i % ways.len()];
                 for light in &mut s.lights {
                     light.shadow = shadows[i % shadows.len()];
                 }

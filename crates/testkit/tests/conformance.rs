@@ -12,7 +12,7 @@ use zeroset::scene::methods::{Choice, Kind, Param, Value};
 use zeroset::scene::render::{Renderer, Silent};
 use zeroset::scene::scene::{Scene, SceneParts};
 use zeroset::scene::settings::{
-    Antialias, Filter, March, Normals, Occlusion, Settings, Shading, Shadow,
+    Antialias, Filter, Integrator, March, Normals, Occlusion, Settings, Shading, Shadow,
 };
 use zeroset::shader::FieldForm;
 use zeroset::trace::CpuRenderer;
@@ -200,8 +200,8 @@ fn methods() -> Vec<(String, Scene)> {
         scene.edit(edit).expect("a scene");
         let (s, l) = (scene.settings(), scene.lights()[0].shadow);
         let name = format!(
-            "{:?} {:?} {:?} {:?} {l:?}",
-            s.march, s.normals, s.shading, s.occlusion
+            "{:?} {:?} {:?} {:?} {:?} {l:?}",
+            s.march, s.normals, s.shading, s.integrator, s.occlusion
         );
         all.push((name, scene));
     };
@@ -215,6 +215,9 @@ fn methods() -> Vec<(String, Scene)> {
     }
     for shading in variants::<Shading>() {
         with(&|s| s.settings.shading = shading);
+    }
+    for integrator in variants::<Integrator>() {
+        with(&|s| s.settings.integrator = integrator);
     }
     for shadow in variants::<Shadow>() {
         with(&|s| s.lights.iter_mut().for_each(|l| l.shadow = shadow));

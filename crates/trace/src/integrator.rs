@@ -12,8 +12,9 @@ use crate::surface::materials;
 use crate::tile::{Area, Hits, Scratch, Solid};
 use fearless_simd::{Simd, prelude::*};
 use zeroset_number::lanes::LaneMask;
-use zeroset_number::{Lanes, Ops, Real, v3};
+use zeroset_number::{Lanes, Ops, Real, Vec3, v3};
 use zeroset_scene::film::Plane;
+use zeroset_scene::light::Light;
 use zeroset_scene::settings::{Occlusion, Shading};
 use zeroset_shade::light::{arrival, towards};
 use zeroset_shade::parameters;
@@ -55,7 +56,12 @@ impl Integrator for Direct {
         q.hits.material.make_opaque(q.hits.count);
         q.hits.followed[..q.hits.count].fill(0.0);
         light(s, sample, q);
-        shade(s, sample, q);
+        shade(
+            s,
+            sample,
+            &SkyColours::of(sample.job.picture.scene.sky()),
+            q,
+        );
     }
 }
 
@@ -75,7 +81,12 @@ impl Integrator for Whitted {
             q.hits.material.make_opaque(q.hits.count);
             q.hits.followed[..q.hits.count].fill(0.0);
             light(s, sample, q);
-            shade(s, sample, q);
+            shade(
+                s,
+                sample,
+                &SkyColours::of(sample.job.picture.scene.sky()),
+                q,
+            );
             return;
         }
         q.hits.followed[..q.hits.count].fill(0.0);
@@ -85,7 +96,12 @@ impl Integrator for Whitted {
             }
         }
         light(s, sample, q);
-        shade(s, sample, q);
+        shade(
+            s,
+            sample,
+            &SkyColours::of(sample.job.picture.scene.sky()),
+            q,
+        );
         if sample.job.picture.goes_on {
             for i in 0..q.hits.count {
                 lose(sample, q, i);
@@ -183,8 +199,8 @@ impl Whitted {
     }
 }
 
-/// What light loses inside a clear body, on the way from hit number `i` back to where its ray began.
-fn lose(sample: &TileSample<'_>, q: &mut Scratch, i: usize) {
+/// What light loses inside clear bodies, on the way from hit number `i` back to where its ray began.
+pub(crate) fn lose(sample: &TileSample<'_>, q: &mut Scratch, i: usize) {
     let hits = &mut q.hits;
     let state = q.paths.state((hits.word[i] & ORDINAL) as usize);
     let clear = hits.material.get(i).transmission > 0.0;
@@ -256,65 +272,94 @@ fn occlude<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
 
 /// Sums up what arrives from the lights.
 fn light<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
-    let (job, solid) = (sample.job, sample.solid);
-    let (count, shading) = (q.hits.count, job.picture.scene.settings().shading);
+    darken(q);
+    for light in sample.job.picture.scene.lights() {
+        if sample.solid.stop.is_set() {
+            break;
+        }
+        shadows(s, sample.solid, light, q);
+        add_light(
+            s,
+            sample,
+            light,
+            q,
+            #[inline(always)]
+            |_, point| towards(&light.source, point),
+        );
+    }
+}
+
+/// Before anything arrives from a light.
+pub(crate) fn darken(q: &mut Scratch) {
+    let count = q.hits.count;
     let columns = q.hits.diffuse.iter_mut().chain(&mut q.hits.gloss);
     columns
         .chain(&mut q.hits.grazing)
         .chain([&mut q.hits.shadow, &mut q.hits.shares])
         .for_each(|c| c[..count].fill(0.0));
-    for light in job.picture.scene.lights() {
-        if solid.stop.is_set() {
-            break;
-        }
-        shadows(s, solid, light, q);
-        s.vectorize(
-            #[inline(always)]
-            || {
-                let hits = &mut q.hits;
-                for i in (0..count).step_by(S::f32s::LEN) {
-                    let lit = load(s, &q.lit, i);
-                    let d = hits.ray(s, i).direction;
-                    let to = towards(&light.source, load3(s, &hits.point, i));
-                    let finish = hits.material.finish(s, shading, i);
-                    let got = arrival(
-                        shading,
-                        light,
-                        to,
-                        load3(s, &hits.normal, i),
-                        d,
-                        lit,
-                        finish,
-                    );
-                    let (diffuse, gloss) = (load3(s, &hits.diffuse, i), load3(s, &hits.gloss, i));
-                    store3(diffuse + got.diffuse, &mut hits.diffuse, i);
-                    store3(gloss + got.gloss, &mut hits.gloss, i);
-                    if matches!(shading, Shading::Physical) {
-                        let grazing = load3(s, &hits.grazing, i);
-                        store3(grazing + got.grazing, &mut hits.grazing, i);
-                    }
-                    if job.wants(Plane::Shadow) {
-                        store(
-                            load(s, &hits.shadow, i) + got.share * lit,
-                            &mut hits.shadow,
-                            i,
-                        );
-                        store(load(s, &hits.shares, i) + got.share, &mut hits.shares, i);
-                    }
+}
+
+/// Adds what arrives from a light: `q.lit` of it, from the direction and the distance that `aim` gives for the hits from a number on, and
+/// their places.
+pub(crate) fn add_light<S: Simd>(
+    s: S,
+    sample: &TileSample<'_>,
+    light: &Light,
+    q: &mut Scratch,
+    aim: impl Fn(usize, Vec3<Lanes<S>>) -> (Vec3<Lanes<S>>, Lanes<S>),
+) {
+    let job = sample.job;
+    let (count, shading) = (q.hits.count, job.picture.scene.settings().shading);
+    s.vectorize(
+        #[inline(always)]
+        || {
+            let hits = &mut q.hits;
+            for i in (0..count).step_by(S::f32s::LEN) {
+                let lit = load(s, &q.lit, i);
+                let d = hits.ray(s, i).direction;
+                let to = aim(i, load3(s, &hits.point, i));
+                let finish = hits.material.finish(s, shading, i);
+                let got = arrival(
+                    shading,
+                    light,
+                    to,
+                    load3(s, &hits.normal, i),
+                    d,
+                    lit,
+                    finish,
+                );
+                let (diffuse, gloss) = (load3(s, &hits.diffuse, i), load3(s, &hits.gloss, i));
+                store3(diffuse + got.diffuse, &mut hits.diffuse, i);
+                store3(gloss + got.gloss, &mut hits.gloss, i);
+                if matches!(shading, Shading::Physical) {
+                    let grazing = load3(s, &hits.grazing, i);
+                    store3(grazing + got.grazing, &mut hits.grazing, i);
                 }
-            },
-        );
-    }
+                if job.wants(Plane::Shadow) {
+                    store(
+                        load(s, &hits.shadow, i) + got.share * lit,
+                        &mut hits.shadow,
+                        i,
+                    );
+                    store(load(s, &hits.shares, i) + got.share, &mut hits.shares, i);
+                }
+            }
+        },
+    );
 }
 
 /// Puts the colours of all hits together.
-fn shade<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
+pub(crate) fn shade<S: Simd>(
+    s: S,
+    sample: &TileSample<'_>,
+    sky: &SkyColours<f32>,
+    q: &mut Scratch,
+) {
     let job = sample.job;
     s.vectorize(
         #[inline(always)]
         || {
             let (scene, hits) = (&job.picture.scene, &mut q.hits);
-            let sky = SkyColours::of(scene.sky());
             for i in (0..hits.count).step_by(S::f32s::LEN) {
                 let what = hits.material.load(s, i);
                 // lights do not shine on the inner side of a clear body
@@ -332,7 +377,7 @@ fn shade<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
                     direction: hits.ray(s, i).direction,
                 };
                 let followed = load(s, &hits.followed, i);
-                let c = colour(scene.settings().shading, &sky, &what, &light, followed);
+                let c = colour(scene.settings().shading, sky, &what, &light, followed);
                 store3(c, &mut hits.colour, i);
                 if job.wants(Plane::Shadow) {
                     let (lit, all) = (load(s, &hits.shadow, i), load(s, &hits.shares, i));

@@ -5,6 +5,7 @@ use crate::integrator::{Direct, Integrator, TileSample, Whitted};
 use crate::march::ORDINAL;
 use crate::normal::{normals, place};
 use crate::order::{self, PLACE};
+use crate::path::PathTracer;
 use crate::paths::PathRay;
 use crate::renderer::{Done, PreparedScene};
 use crate::simd::{splat, store, store3};
@@ -20,6 +21,7 @@ use zeroset_scene::camera::Camera;
 use zeroset_scene::film::Plane;
 use zeroset_scene::material::Material;
 use zeroset_scene::settings::{self, Filter};
+use zeroset_shade::light::discs;
 use zeroset_shade::sampling::{point, scramble};
 use zeroset_shade::sky::{SkyColours, colour};
 use zeroset_shade::view::View;
@@ -200,6 +202,9 @@ impl<'a> Job<'a> {
                 };
                 self.light(s, &whitted, &sample, q);
             }
+            settings::Integrator::Path { depth, .. } => {
+                self.light(s, &PathTracer { depth }, &sample, q);
+            }
         }
         hits
     }
@@ -246,8 +251,16 @@ impl<'a> Job<'a> {
 
     /// Adds the light that rays brought which went on, to the pixels that they come from.
     fn add_onward(&self, q: &mut Scratch) {
+        let most = match self.picture.scene.settings().integrator {
+            settings::Integrator::Path { clamp, .. } => clamp,
+            settings::Integrator::Whitted { .. } | settings::Integrator::Direct => None,
+        };
         let mut add = |pixel: usize, light: Vec3<f32>| {
             let at = usize::from(PLACE[pixel]);
+            let light = match most {
+                Some(most) => light * (most / light.max_component().max(1e-30)).min(1.0),
+                None => light,
+            };
             for (column, x) in q.planes.colour.iter_mut().zip(light.array()) {
                 column[at] += x;
             }
@@ -259,9 +272,16 @@ impl<'a> Job<'a> {
             let state = q.paths.state(number);
             add(state.pixel, state.weight.times(v3(r[i], g[i], b[i])));
         }
-        let sky = SkyColours::of(self.picture.scene.sky());
+        let scene = &self.picture.scene;
+        let sky = SkyColours::of(scene.sky());
         for PathRay { ray, state } in q.paths.missed() {
-            let seen = colour(&sky, ray.direction.y);
+            let mut seen = colour(&sky, ray.direction.y);
+            if state.is_scattered {
+                seen = seen * sky.ambient;
+            }
+            if state.sees_lights {
+                seen = seen + discs(scene.lights(), ray.direction);
+            }
             add(state.pixel, state.weight.times(seen));
         }
     }

@@ -39,6 +39,7 @@ mod march;
 mod marcher;
 mod normal;
 mod order;
+mod path;
 mod paths;
 mod planes;
 mod primary;

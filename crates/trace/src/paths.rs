@@ -25,6 +25,12 @@ pub(crate) struct PathState {
     pub(crate) refractions: u32,
     /// The material of the clear body that the ray is in, by number.
     pub(crate) medium: Option<f32>,
+    /// Surfaces on the way.
+    pub(crate) bounces: u32,
+    /// Whether a matte body scattered the light: then the sky counts as what lights the scene, else as what is seen.
+    pub(crate) is_scattered: bool,
+    /// Whether the last surface was that of a clear body, behind which no ray looks for lights.
+    pub(crate) sees_lights: bool,
 }
 
 /// The rays that go on in a tile.
@@ -116,6 +122,9 @@ impl PathState {
             reflections: 0,
             refractions: 0,
             medium: None,
+            bounces: 0,
+            is_scattered: false,
+            sees_lights: false,
         }
     }
 }

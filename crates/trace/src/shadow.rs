@@ -136,7 +136,7 @@ pub(crate) fn shadows<S: Simd>(s: S, solid: &Solid<'_>, light: &Light, q: &mut S
     };
 }
 
-fn unshadowed<S: Simd>(s: S, light: &Light, q: &mut Scratch) -> u64 {
+pub(crate) fn unshadowed<S: Simd>(s: S, light: &Light, q: &mut Scratch) -> u64 {
     s.vectorize(
         #[inline(always)]
         || {

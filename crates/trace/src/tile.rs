@@ -2,6 +2,7 @@
 
 use crate::march::ITERATIONS;
 use crate::order::Sorting;
+use crate::path::BounceColumns;
 use crate::paths::Paths;
 use crate::planes::Planes;
 use crate::ray::{Common, Queue, RayColumns, WideRay};
@@ -279,6 +280,10 @@ pub(crate) struct Scratch {
     pub(crate) sorting: Sorting,
     /// Random numbers of the hits.
     pub(crate) scramble: [Vec<u32>; 2],
+    /// Where rays towards lights go from the hits.
+    pub(crate) towards: [Vec<f32>; 3],
+    /// Where rays go on from them.
+    pub(crate) bounce: BounceColumns,
     /// Sines of the clearances of the occlusion's cones.
     pub(crate) clearance: [Box<Sheet>; zeroset_shade::occlusion::CONES],
     pub(crate) planes: Planes,
@@ -363,6 +368,8 @@ impl Scratch {
             exhausted: Vec::with_capacity(WIDTH * HEIGHT),
             sorting: Sorting::new(),
             scramble: [vec![0; TILE_RAYS + SLACK], vec![0; TILE_RAYS + SLACK]],
+            towards: std::array::from_fn(|_| vec![0.0; TILE_RAYS + SLACK]),
+            bounce: BounceColumns::new(),
             clearance: std::array::from_fn(|_| Sheet::boxed()),
             planes: Planes::new(),
             counts: Evaluations::default(),

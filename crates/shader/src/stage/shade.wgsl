@@ -31,16 +31,19 @@ fn towards(light: Light, p: vec3f) -> vec4f {
 }
 
 /// What arrives from all lights.
-fn arriving(at: Surface, what: LocalMaterial) -> Arrival {
+fn arriving(path: Onward, at: Surface, what: LocalMaterial) -> Arrival {
     var sum = Arrival(vec3f(0.0), vec3f(0.0), vec3f(0.0), 0.0, 0.0);
     // lights do not shine on the inner side of a clear body
     let shone = select(1.0, 1.0 - what.finish.w, at.side < 0.0);
     let origin = at.point + at.normal * at.offset;
     for (var k = 0u; k < frame.lights; k++) {
         let light = load_light(frame.light_rows + k * LIGHT_ROWS);
-        let ray = towards(light, origin);
-        let lit = shadow(at, light, ray.xyz, ray.w);
-        let to = towards(light, at.point);
+        let ray = aim(path, light, k, origin);
+        var lit = shadow(at, light, ray.xyz, ray.w);
+        let to = aim(path, light, k, at.point);
+        if (at.side < 0.0) {
+            lit *= shining(path);
+        }
         // by the cosine law, in the highlight, the part of that at grazing angles, and what distance leaves
         let answer = light_response(to.xyz, to.w, light.kind, at.normal, at.direction, light_finish(what));
         let power = answer.w * lit;
@@ -58,6 +61,6 @@ fn colour_of(what: LocalMaterial, light: Arrival, at: Surface, seen: AmbientVisi
     return surface_colour(
         what.albedo, what.emission, what.finish,
         light.diffuse, light.gloss, light.grazing, seen.open, seen.bent, at.normal, at.direction,
-        frame.sky_horizon, frame.sky_top, frame.sky_bottom, frame.ambient, followed,
+        frame.sky_horizon, frame.sky_top, frame.sky_bottom, ambient_share(), followed,
     );
 }

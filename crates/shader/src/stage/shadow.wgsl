@@ -6,10 +6,10 @@ fn shadow(at: Surface, light: Light, to: vec3f, distance: f32) -> f32 {
         return 0.0;
     }
     // what is seen from inside the solid is lit as if there were no solid: else it would be dark
-    if (u32(light.shadow) == SHADOW_NONE || at.side < 0.0) {
+    if (shadow_kind(light) == SHADOW_NONE || at.side < 0.0) {
         return 1.0;
     }
-    let traced = secondary_ray(at, to, distance, u32(light.shadow), light.sharpness);
+    let traced = secondary_ray(at, to, distance, shadow_kind(light), light.sharpness);
     counted[COUNT_SHADOW] += traced.samples;
     return traced.light;
 }

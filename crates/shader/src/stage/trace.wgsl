@@ -29,9 +29,8 @@ fn blend(a: LocalMaterial, b: LocalMaterial, share: f32) -> LocalMaterial {
 }
 
 /// What a ray found that hit nothing.
-fn background(ray: Ray, steps: u32) -> Sample {
-    let colour = sky_colour(frame.sky_horizon, frame.sky_top, frame.sky_bottom, ray.direction.y);
-    return Sample(colour, -1.0, vec3f(0.0), 0.0, vec3f(0.0), 1.0, 1.0, 0.0, f32(steps), 0u);
+fn background(path: Onward, steps: u32) -> Sample {
+    return Sample(sky_of(path), -1.0, vec3f(0.0), 0.0, vec3f(0.0), 1.0, 1.0, 0.0, f32(steps), 0u);
 }
 
 /// A ray that waits to be followed.
@@ -43,6 +42,11 @@ struct Onward {
     bounces: vec2u,
     /// The material of the clear body that the ray is in, by number; -1 where it is in none.
     medium: f32,
+    /// What is known of the way beside that.
+    flags: u32,
+    /// Where the random numbers of the way come from.
+    pixel: vec2u,
+    index: u32,
 }
 
 /// Follows ray number `index` of a pixel. `span` is the part of it that may hold the surface.
@@ -50,7 +54,7 @@ fn trace_ray(pixel: vec2u, index: u32, ray: Ray, span: vec3f) -> Sample {
     var first = Sample();
     var waiting: array<Onward, WAITING>;
     var count = 1u;
-    waiting[0] = Onward(ray, vec3f(1.0), vec2u(0u), -1.0);
+    waiting[0] = Onward(ray, vec3f(1.0), vec2u(0u), -1.0, 0u, pixel, index);
     var is_first = true;
     while (count > 0u) {
         count -= 1u;
@@ -64,7 +68,7 @@ fn trace_ray(pixel: vec2u, index: u32, ray: Ray, span: vec3f) -> Sample {
         if (is_first) {
             first = found;
         } else {
-            first.colour += path.weight * found.colour;
+            first.colour += clamped(path.weight * found.colour);
         }
         is_first = false;
         if (gives_up()) {
@@ -80,6 +84,11 @@ fn trace_ray(pixel: vec2u, index: u32, ray: Ray, span: vec3f) -> Sample {
     return first;
 }
 
+/// Light as far as it may count.
+fn clamped(light: vec3f) -> vec3f {
+    return light * min(1.0, frame.clamp / max(max(max(light.x, light.y), light.z), 1e-30));
+}
+
 /// Follows one ray. Rays that go on from where it ends are left in `next`, those that weigh nothing do not.
 fn follow(pixel: vec2u, index: u32, path: Onward, span: vec3f, is_first: bool, next: ptr<function, array<Onward, 2>>) -> Sample {
     let ray = path.ray;
@@ -91,12 +100,12 @@ fn follow(pixel: vec2u, index: u32, path: Onward, span: vec3f, is_first: bool, n
     }
     let end = min(min(leave(ray, frame.threshold.x, reach), frame.far), span.z);
     if (!(start < end)) {
-        return background(ray, 0u);
+        return background(path, 0u);
     }
     let found = march(ray, start, end, span.y);
     counted[COUNT_MARCH] += found.steps + found.refined;
     if (!found.hit) {
-        return background(ray, found.steps);
+        return background(path, found.steps);
     }
     var t = found.t;
     var residual = found.f;
@@ -140,7 +149,7 @@ fn follow(pixel: vec2u, index: u32, path: Onward, span: vec3f, is_first: bool, n
     // inside a solid there is no sky: it is shown as if there were no solid
     var seen = AmbientVisibility(1.0, normal);
     if (found.side > 0.0) {
-        seen = occlusion(at, load_occluder(frame.object_rows + object * OCCLUDER_ROWS), key);
+        seen = sky_visibility(at, load_occluder(frame.object_rows + object * OCCLUDER_ROWS), key);
     }
     let width = pixel_here / sqrt(f32(max(frame.samples, 1u)));
     let place = place_on(point, normal, ray.direction, width, marks.orbit);
@@ -148,11 +157,8 @@ fn follow(pixel: vec2u, index: u32, path: Onward, span: vec3f, is_first: bool, n
     if (marks.share > 0.0) {
         what = blend(what, local_material(marks.second, place), marks.share);
     }
-    let light = arriving(at, what);
-    var followed = 0.0;
-    if (frame.reflections + frame.refractions > 0u) {
-        followed = go_on(path, at, t, what, marks.first, next);
-    }
+    let light = arriving(path, at, what);
+    let followed = go_on(path, at, t, what, marks.first, next);
     var colour = colour_of(what, light, at, seen, followed);
     if (found.side < 0.0 && (path.medium >= 0.0 || what.finish.w > 0.0)) {
         colour *= transmittance(body_of(path, marks.first).attenuation, t);
@@ -170,54 +176,4 @@ fn follow(pixel: vec2u, index: u32, path: Onward, span: vec3f, is_first: bool, n
         f32(found.steps),
         0u,
     );
-}
-
-/// Sends rays on from a surface that a ray met at the distance `t`, into `next`. Gives the share of its reflection that they follow. The
-/// twin of `Whitted::go_on` of the CPU renderer.
-fn go_on(path: Onward, at: Surface, t: f32, what: LocalMaterial, material: f32, next: ptr<function, array<Onward, 2>>) -> f32 {
-    let inside = at.side < 0.0;
-    let clear = what.finish.w * (1.0 - what.finish.y);
-    let smooth_share = followed_share(what.finish.z);
-    if (clear <= 0.0 && (inside || smooth_share <= 0.0)) {
-        return 0.0;
-    }
-    let d = at.direction;
-    let n = at.normal;
-    let cosine = clamp(-dot(n, d), 0.0, 1.0);
-    let travelled = t + path.ray.travelled;
-    let body = body_of(path, material);
-    var medium = -1.0;
-    var weight = path.weight;
-    if (inside) {
-        weight *= transmittance(body.attenuation, t);
-        medium = select(material, path.medium, path.medium >= 0.0);
-    }
-    var reflected = vec3f(0.0);
-    if (!inside) {
-        reflected = mirror_reflectance(what.albedo, what.finish, cosine) * (smooth_share * (1.0 - clear));
-    }
-    let bounces = path.bounces + select(vec2u(1u, 0u), vec2u(0u, 1u), inside);
-    if (clear > 0.0) {
-        let met = border(d, n, select(body.ior, 1.0 / body.ior, inside));
-        reflected += vec3f(clear * met.w);
-        let through = clear * (1.0 - met.w);
-        let colour = select(what.albedo, vec3f(1.0), inside);
-        let passed = weight * colour * through;
-        if (path.bounces.y < frame.refractions && is_bright(passed)) {
-            let ray = Ray(at.point - n * at.offset, met.xyz, path.ray.narrow, travelled);
-            (*next)[0] = Onward(ray, passed, path.bounces + vec2u(0u, 1u), select(material, -1.0, inside));
-        }
-    }
-    let mirrored = weight * reflected;
-    if (bounces.x <= frame.reflections && bounces.y <= frame.refractions && is_bright(mirrored)) {
-        let ray = Ray(at.point + n * at.offset, d + n * (2.0 * cosine), path.ray.narrow, travelled);
-        (*next)[1] = Onward(ray, mirrored, bounces, medium);
-        return smooth_share + (1.0 - smooth_share) * clear;
-    }
-    return clear;
-}
-
-/// Whether light of this weight is worth a ray.
-fn is_bright(weight: vec3f) -> bool {
-    return max(max(weight.x, weight.y), weight.z) >= FAINTEST;
 }

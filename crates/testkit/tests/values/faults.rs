@@ -187,7 +187,7 @@ fn faults_in_scenes_are_noticed() {
 
 /// What is wrong, in the text of which shader how, and the check that must notice. Formulas are recorded from those of the CPU:
 /// these faults are in how shaders call them, or in their numbers.
-const IN_SHADERS: [(&str, &str, &str, &str); 28] = [
+const IN_SHADERS: [(&str, &str, &str, &str); 34] = [
     (
         "a closest place behind the second sample",
         "closest_shadow(f, z, r, t, sharpness)",
@@ -268,14 +268,14 @@ const IN_SHADERS: [(&str, &str, &str, &str); 28] = [
     ),
     (
         "a sky that changes evenly",
-        "frame.sky_bottom, ray.direction.y)",
-        "frame.sky_bottom, ray.direction.y * abs(ray.direction.y))",
+        "frame.sky_bottom, path.ray.direction.y)",
+        "frame.sky_bottom, path.ray.direction.y * abs(path.ray.direction.y))",
         "the sky through a pinhole",
     ),
     (
         "a sky upside down",
-        "frame.sky_top, frame.sky_bottom, ray.direction.y)",
-        "frame.sky_bottom, frame.sky_top, ray.direction.y)",
+        "frame.sky_top, frame.sky_bottom, path.ray.direction.y)",
+        "frame.sky_bottom, frame.sky_top, path.ray.direction.y)",
         "the sky in parallel rays",
     ),
     (
@@ -334,9 +334,45 @@ const IN_SHADERS: [(&str, &str, &str, &str); 28] = [
     ),
     (
         "a reflection that is met twice",
-        "first.colour += path.weight * found.colour;",
-        "first.colour += 2.0 * path.weight * found.colour;",
+        "clamped(path.weight * found.colour)",
+        "clamped(2.0 * path.weight * found.colour)",
         "what a mirror shows",
+    ),
+    (
+        "ways that end at random without the others making up for it",
+        "weight /= chance;",
+        "",
+        "a closed room that glows",
+    ),
+    (
+        "one surface too many",
+        "path.bounces.x + 1u >= frame.depth",
+        "path.bounces.x >= frame.depth",
+        "a closed room that glows",
+    ),
+    (
+        "a sun that is seen half as bright as it shines",
+        "0.5 / (1.0 - cosine)",
+        "0.25 / (1.0 - cosine)",
+        "the sun through a pane",
+    ),
+    (
+        "a sun that shines from its middle alone",
+        "return vec4f(cone_around(to.xyz, light_width(light), u), to.w);",
+        "return to;",
+        "the penumbra of a wide sun",
+    ),
+    (
+        "mirrors on the other side",
+        "let ior = select(body.ior, 1.0 / body.ior, inside);",
+        "let ior = select(1.0 / body.ior, body.ior, inside);",
+        "a ball of glass, one way of many",
+    ),
+    (
+        "light that counts more than it may",
+        "frame.clamp / max(",
+        "2.0 * frame.clamp / max(",
+        "clamped light",
     ),
     (
         "mirrors that hide nothing of each other",

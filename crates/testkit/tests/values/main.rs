@@ -13,6 +13,7 @@ mod faults;
 mod film;
 mod known;
 mod light;
+mod paths;
 mod pattern;
 mod shadow;
 mod sky;
@@ -43,7 +44,8 @@ fn checks() -> Vec<Check> {
 }
 
 fn check_named(name: &str) -> Check {
-    let found = checks().into_iter().find(|c| c.name == name);
+    let mut all = checks().into_iter().chain(paths::CHECKS);
+    let found = all.find(|c| c.name == name);
     found.unwrap_or_else(|| panic!("no check is called {name}"))
 }
 
@@ -67,6 +69,28 @@ fn all(draw: &dyn Fn(&Scene) -> Film) {
         .filter_map(|check| Some(format!("{}: {}", check.name, (check.run)(draw).err()?)))
         .collect();
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+/// All ways of light, with one renderer.
+fn all_paths(draw: &dyn Fn(&Scene) -> Film) {
+    let wrong: Vec<String> = (paths::CHECKS.iter())
+        .filter_map(|check| Some(format!("{}: {}", check.name, (check.run)(draw).err()?)))
+        .collect();
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn paths_are_right() {
+    let renderer = CpuRenderer::new(None).unwrap();
+    all_paths(&|scene| on(&renderer, scene));
+}
+
+#[test]
+fn paths_are_right_on_the_gpu() {
+    let Some(gpu) = testing::renderer("known values of paths on the GPU") else {
+        return;
+    };
+    all_paths(&|scene| on(&gpu, scene));
 }
 
 #[test]

@@ -1,0 +1,130 @@
+// Path tracing: one way of many goes on from each surface. The twin of `trace/path.rs`.
+
+/// Decisions at a surface: where the ray goes on, and whether; then where each light is looked for.
+const DECISIONS: u32 = 66u;
+/// Ways end at random from this number of surfaces on.
+const SURE: u32 = 3u;
+/// The most that the chance is to go on.
+const LIKELIEST: f32 = 0.95;
+/// A matte body scattered the light on its way.
+const SCATTERED: u32 = 1u;
+/// The last surface was that of a clear body.
+const SEES_LIGHTS: u32 = 2u;
+
+/// A hash of a number whose bit k depends on lower bits alone (Laine and Karras 2011, with the constants of Burley 2020).
+fn laine_karras(number: u32, seed: u32) -> u32 {
+    var x = number + seed;
+    x ^= x * 0x6c50b47cu;
+    x ^= x * 0xb82f1e52u;
+    x ^= x * 0xc7afe638u;
+    return x ^ (x * 0x8d22f6e6u);
+}
+
+fn owen(x: u32, seed: u32) -> u32 {
+    return mirror_bits(laine_karras(mirror_bits(x), seed));
+}
+
+/// Two random numbers for a decision at a surface.
+fn decided(path: Onward, decision: u32) -> vec2f {
+    let key = scramble(path.pixel, frame.seed ^ HIT_SEEDS);
+    let number = path.bounces.x * DECISIONS + decision;
+    let a = scramble(key, number);
+    let c = scramble(key.yx, ~number);
+    let at = sobol(owen(path.index, c.x));
+    return vec2f(vec2u(owen(at.x, a.x), owen(at.y, a.y)) >> vec2u(8u)) * UNIT;
+}
+
+/// The sky comes along the rays that meet nothing.
+fn sky_visibility(at: Surface, how: Occluder, key: vec2u) -> AmbientVisibility {
+    return AmbientVisibility(1.0, at.normal);
+}
+
+fn ambient_share() -> f32 {
+    return 0.0;
+}
+
+/// Lights are as wide as the penumbrae of their shadows.
+fn aim(path: Onward, light: Light, number: u32, p: vec3f) -> vec4f {
+    let to = towards(light, p);
+    if (light.sharpness == 0.0) {
+        return to;
+    }
+    let u = decided(path, 2u + number);
+    return vec4f(cone_around(to.xyz, light_width(light), u), to.w);
+}
+
+/// The cosine of the angle under which half a light is seen.
+fn light_width(light: Light) -> f32 {
+    return 1.0 / sqrt(1.0 + 1.0 / (light.sharpness * light.sharpness));
+}
+
+fn shadow_kind(light: Light) -> u32 {
+    return select(SHADOW_HARD, SHADOW_NONE, u32(light.shadow) == SHADOW_NONE);
+}
+
+/// No ray finds lights from inside clear bodies.
+fn shining(path: Onward) -> f32 {
+    return select(1.0, 0.0, path.medium >= 0.0);
+}
+
+fn sky_of(path: Onward) -> vec3f {
+    var seen = sky_colour(frame.sky_horizon, frame.sky_top, frame.sky_bottom, path.ray.direction.y);
+    if ((path.flags & SCATTERED) != 0u) {
+        seen *= frame.ambient;
+    }
+    if ((path.flags & SEES_LIGHTS) != 0u) {
+        for (var k = 0u; k < frame.lights; k++) {
+            let light = load_light(frame.light_rows + k * LIGHT_ROWS);
+            let cosine = light_width(light);
+            if (light.kind == 0.0 && light.sharpness > 0.0 && dot(light.place, path.ray.direction) > cosine) {
+                seen += light.radiance * (0.5 / (1.0 - cosine));
+            }
+        }
+    }
+    return seen;
+}
+
+/// Chooses where a ray goes on from a surface that it met at the distance `t`, into `next`. Gives the share of the sky's reflection that
+/// is found that way: all of it.
+fn go_on(path: Onward, at: Surface, t: f32, what: LocalMaterial, material: f32, next: ptr<function, array<Onward, 2>>) -> f32 {
+    let inside = at.side < 0.0;
+    let body = body_of(path, material);
+    if (path.bounces.x + 1u >= frame.depth || (inside && path.medium < 0.0 && what.finish.w <= 0.0)) {
+        return 1.0;
+    }
+    let first = decided(path, 0u);
+    let u = decided(path, 1u);
+    let ior = select(body.ior, 1.0 / body.ior, inside);
+    let choice = vec3f(first.x, u.x, u.y);
+    let way = scatter_way(what.albedo, what.finish, at.normal, at.direction, ior, choice);
+    let tint = select(what.albedo, vec3f(1.0), inside);
+    var weight = path.weight * scatter_weight(what.albedo, what.finish, at.normal, at.direction, ior, tint, choice);
+    var medium = -1.0;
+    if (inside) {
+        weight *= transmittance(body.attenuation, t);
+        medium = select(material, path.medium, path.medium >= 0.0);
+    }
+    let strongest = max(max(weight.x, weight.y), weight.z);
+    if (!(strongest > 0.0 && strongest < FAR)) {
+        return 1.0;
+    }
+    if (path.bounces.x + 1u >= SURE) {
+        let chance = min(strongest, LIKELIEST);
+        if (first.y >= chance) {
+            return 1.0;
+        }
+        weight /= chance;
+    }
+    // lobe 0, 1 or 2, and 4 where the ray goes on behind the surface
+    let through = way.w > 3.5;
+    let lobe = way.w - select(0.0, 4.0, through);
+    if (through) {
+        medium = select(material, -1.0, inside);
+    }
+    let side = select(1.0, -1.0, through);
+    let ray = Ray(at.point + at.normal * (at.offset * side), way.xyz, path.ray.narrow, t + path.ray.travelled);
+    var flags = path.flags & SCATTERED;
+    flags |= select(0u, SCATTERED, lobe < 0.5) | select(0u, SEES_LIGHTS, lobe > 1.5);
+    (*next)[0] = Onward(ray, weight, path.bounces + vec2u(1u, 0u), medium, flags, path.pixel, path.index);
+    return 1.0;
+}

@@ -1,0 +1,31 @@
+// What a surface sees of the sky and of lights, where an occlusion method and shadows say it.
+
+/// How much of the sky a surface sees.
+fn sky_visibility(at: Surface, how: Occluder, key: vec2u) -> AmbientVisibility {
+    return occlusion(at, how, key);
+}
+
+/// How much of the sky's light a surface gets that sees all of it.
+fn ambient_share() -> f32 {
+    return frame.ambient;
+}
+
+/// Where a light is looked for: direction and distance.
+fn aim(path: Onward, light: Light, number: u32, p: vec3f) -> vec4f {
+    return towards(light, p);
+}
+
+/// The shadow of a light as it is found.
+fn shadow_kind(light: Light) -> u32 {
+    return u32(light.shadow);
+}
+
+/// How much of the lights shines on a surface.
+fn shining(path: Onward) -> f32 {
+    return 1.0;
+}
+
+/// What a ray that goes on sees where it meets nothing.
+fn sky_of(path: Onward) -> vec3f {
+    return sky_colour(frame.sky_horizon, frame.sky_top, frame.sky_bottom, path.ray.direction.y);
+}
