@@ -11,7 +11,7 @@ use glam::{DVec3, Vec3};
 use std::collections::{BTreeMap, HashMap};
 use zeroset_scene::camera::{Camera, Lens};
 use zeroset_scene::film::Plane;
-use zeroset_scene::light::{self, Light, Sky};
+use zeroset_scene::light::{self, Fog, Light, Sky};
 use zeroset_scene::material::Material;
 use zeroset_scene::scene::{Object, Scene, SceneParts};
 use zeroset_scene::settings::{Settings, Shading, Shadow};
@@ -67,6 +67,7 @@ pub(crate) struct Draft {
     /// Absent as long as nothing is said of lights.
     pub(crate) lights: Option<Vec<Light>>,
     pub(crate) sky: Option<Sky>,
+    pub(crate) fog: Option<Fog>,
     pub(crate) settings: Option<Settings>,
     /// Where that which may be stated once was stated.
     pub(crate) stated: BTreeMap<&'static str, Place>,
@@ -97,6 +98,7 @@ impl Draft {
             stated: BTreeMap::new(),
             name: None,
             sky: None,
+            fog: None,
             settings: None,
             parameters: Vec::new(),
             overrides: options.set.clone(),
@@ -193,7 +195,10 @@ impl Draft {
             .unwrap_or_else(|| vec![key_light(settings.shading)]);
         let bounds = objects.iter().map(|o| o.field.facts().bounds);
         let camera = framing::camera(&self.view.unwrap_or_default(), bounds, settings.size)?;
-        let sky = self.sky.unwrap_or_default();
+        let sky = Sky {
+            fog: self.fog,
+            ..self.sky.unwrap_or_default()
+        };
         let parts = SceneParts {
             name: self.name.unwrap_or_else(|| name.to_string()),
             objects,

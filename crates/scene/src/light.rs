@@ -58,6 +58,41 @@ pub struct Sky {
     pub bottom: Vec3,
     /// Share of the sky's light that reaches an unoccluded surface from everywhere.
     pub ambient: f32,
+    /// Angle under which the disc of the sun is seen, radians; 0 for none. (The real one: 0.0093.) The sun is the first directional light.
+    pub sun: f32,
+    /// Fog, where there is any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fog: Option<Fog>,
+}
+
+/// Fog: it takes light, and sends its own.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Fog {
+    /// Its linear colour; that of the horizon where it is not stated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub colour: Option<Vec3>,
+    /// The share of light that it takes over a small length, by that length, at the height `base`.
+    pub density: f32,
+    /// How far up there is e times less of it; the same everywhere where it is not stated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub height: Option<f32>,
+    /// Where it has its density.
+    pub base: f32,
+    /// How much it shows of the sun, 0 to 10.
+    pub glow: f32,
+}
+
+impl Default for Fog {
+    fn default() -> Self {
+        Fog {
+            colour: None,
+            density: 0.05,
+            height: None,
+            base: 0.0,
+            glow: 0.0,
+        }
+    }
 }
 
 impl Default for Sky {
@@ -67,6 +102,8 @@ impl Default for Sky {
             horizon: Vec3::new(0.80, 0.86, 0.92),
             bottom: Vec3::new(0.30, 0.29, 0.28),
             ambient: 0.45,
+            sun: 0.0,
+            fog: None,
         }
     }
 }

@@ -8,7 +8,7 @@ pub use fault::{Fault, PathStep, SceneError};
 pub use methods::{antialias, integrator, march, occlusion, shadow};
 
 use crate::camera::{Camera, Lens};
-use crate::light::{Light, Sky, Source};
+use crate::light::{Fog, Light, Sky, Source};
 use crate::material::{Image, Material, Pattern};
 use crate::methods::Value::{Real, Whole};
 use crate::scene::SceneParts;
@@ -285,7 +285,23 @@ pub fn sky(sky: &Sky) -> Checked {
     colour("top", sky.top)?;
     colour("horizon", sky.horizon)?;
     colour("bottom", sky.bottom)?;
-    number("ambient", sky.ambient, 0.0, 10.0)
+    number("ambient", sky.ambient, 0.0, 10.0)?;
+    number("sun", sky.sun, 0.0, std::f32::consts::PI)?;
+    sky.fog
+        .as_ref()
+        .map_or(Ok(()), |f| fog(f).map_err(|e| e.at("fog")))
+}
+
+fn fog(fog: &Fog) -> Checked {
+    if let Some(c) = fog.colour {
+        colour("colour", c)?;
+    }
+    number("density", fog.density, 0.0, 1e6)?;
+    if let Some(height) = fog.height {
+        number("height", height, SMALL as f32, LARGE as f32)?;
+    }
+    number("base", fog.base, -FAR, FAR)?;
+    number("glow", fog.glow, 0.0, 10.0)
 }
 
 /// Whether settings are in their ranges, with `samples` rays (and [`SAMPLES`]) at most where something is sampled.

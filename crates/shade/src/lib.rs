@@ -20,6 +20,7 @@
 
 #![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
+pub mod air;
 pub mod bsdf;
 pub mod light;
 pub mod march;

@@ -2,7 +2,9 @@
 
 use std::fmt::Write;
 use zeroset_field::program::{FLAT, INSIDE_MARKS};
-use zeroset_shade::{march, occlusion, pattern, sampling, secondary, shadow, skin, surface, view};
+use zeroset_shade::{
+    air, march, occlusion, pattern, sampling, secondary, shadow, skin, surface, view,
+};
 
 /// The value of a constant.
 enum Value {
@@ -82,6 +84,7 @@ fn constants() -> Vec<(&'static str, Value)> {
         ("PCG_SUMMAND", Whole(sampling::PCG[1])),
         ("HIT_SEEDS", Whole(sampling::HIT_SEEDS)),
         ("UNIT", Number(sampling::UNIT)),
+        ("ENDLESS", Number(air::ENDLESS)),
         // rays that go on
         ("FAINTEST", Number(surface::FAINTEST)),
         // patterns

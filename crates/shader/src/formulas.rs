@@ -11,7 +11,7 @@ use zeroset_shade::sky::{self, SkyColours};
 use zeroset_shade::surface::{self, Lighting, LocalMaterial};
 use zeroset_shade::view::{self, Linear};
 use zeroset_shade::{
-    bsdf, light, march, normal, occlusion, sampling, secondary, shadow, skin, tone,
+    air, bsdf, light, march, normal, occlusion, sampling, secondary, shadow, skin, tone,
 };
 
 /// A formula that shaders call.
@@ -174,6 +174,12 @@ formulas! {
     fn sky_colour(horizon: Vec3, top: Vec3, bottom: Vec3, y: Number) =
         // the sky itself does not depend on how much of it arrives
         sky::colour(&SkyColours { top, horizon, bottom, ambient: y }, y);
+    fn fog_share(density: Number, falloff: Number, y: Number, rise: Number, t: Number) =
+        air::share(density, falloff, y, rise, t);
+    fn fog_light(fog: Vec3, sun: Vec3, radiance: Vec3, glow: Number, direction: Vec3) =
+        air::scattered(fog, sun, radiance, glow, direction);
+    fn sun_disc(sun: Vec3, radiance: Vec3, cosine: Number, direction: Vec3) =
+        air::disc(sun, radiance, cosine, direction);
     fn towards_point(place: Vec3, point: Vec3) = light::towards_point(place, point);
     fn light_response@Physical(to: Vec3, distance: Number, kind: Number, normal: Vec3, direction: Vec3, finish: Number) =
         response(Shading::Physical, (to, distance), kind, normal, direction, finish);

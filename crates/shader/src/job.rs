@@ -20,6 +20,7 @@ use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{
     Antialias, Filter, Integrator, March, Occlusion, Settings, Shading, Shadow,
 };
+use zeroset_shade::air::Air;
 use zeroset_shade::light::luminance;
 use zeroset_shade::skin::has_skins;
 use zeroset_shade::view::{Region, View};
@@ -279,6 +280,7 @@ impl Frame {
 fn frame(scene: &Scene, region: &Region) -> Frame {
     let settings = scene.settings();
     let sky = scene.sky();
+    let air = Air::of(sky, scene.lights());
     let [reflections, refractions] = bounces(settings).unwrap_or_default();
     let (depth, clamp) = match settings.integrator {
         Integrator::Path { depth, clamp } => (depth, clamp),
@@ -302,6 +304,13 @@ fn frame(scene: &Scene, region: &Region) -> Frame {
         refractions,
         depth,
         clamp: clamp.unwrap_or(UNLIMITED),
+        falloff: air.falloff,
+        sun: air.sun.array(),
+        sun_cosine: air.cosine,
+        sun_radiance: air.radiance.array(),
+        glow: air.glow,
+        fog: air.fog.array(),
+        density: air.density,
         seed: settings.seed,
         sky_top: sky.top.to_array(),
         ambient: sky.ambient,

@@ -167,8 +167,20 @@ shared! {
         depth: u32,
         /// The most that the light counts of a ray that went on.
         clamp: f32,
-        /// Not used.
-        pad: u32,
+        /// By what power fog grows thinner over a scene unit upwards.
+        falloff: f32,
+        /// Direction of the sun.
+        sun: [f32; 3],
+        /// Cosine of half the angle under which it is seen; above 1 where it is not shown.
+        sun_cosine: f32,
+        /// What a white surface shows that faces it.
+        sun_radiance: [f32; 3],
+        /// How much fog shows of it.
+        glow: f32,
+        /// Colour of fog.
+        fog: [f32; 3],
+        /// What fog takes over a scene unit at the height 0; 0 for none.
+        density: f32,
     }
 
     /// What one dispatch covers.

@@ -338,6 +338,7 @@ impl Key {
             include_str!("stage/surface.wgsl"),
             include_str!("stage/material.wgsl"),
             include_str!("stage/ao.wgsl"),
+            include_str!("stage/air.wgsl"),
             include_str!("stage/shade.wgsl"),
             include_str!("stage/trace.wgsl"),
         ];
@@ -501,7 +502,7 @@ fn switch<'a>(
 }
 
 /// Formulas that every picture needs.
-const EVERYWHERE: [&str; 20] = [
+const EVERYWHERE: [&str; 23] = [
     "false_position",
     "on_plane",
     "pinhole_ray",
@@ -522,6 +523,9 @@ const EVERYWHERE: [&str; 20] = [
     "sky_colour",
     "towards_point",
     "transmittance",
+    "fog_share",
+    "fog_light",
+    "sun_disc",
 ];
 
 /// Those of `stage/secondary.wgsl`.

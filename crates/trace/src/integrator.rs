@@ -16,6 +16,7 @@ use zeroset_number::{Lanes, Ops, Real, Vec3, v3};
 use zeroset_scene::film::Plane;
 use zeroset_scene::light::Light;
 use zeroset_scene::settings::{Occlusion, Shading};
+use zeroset_shade::air::{self, through};
 use zeroset_shade::light::{arrival, towards};
 use zeroset_shade::parameters;
 use zeroset_shade::sampling::{hit_seed, scramble};
@@ -129,10 +130,7 @@ impl Whitted {
         let (d, n) = (ray.direction, hits.normal(i));
         let cosine = (-n.dot(d)).clamp(0.0, 1.0);
         let body = sample.job.material(state.medium.unwrap_or(hits.first[i]));
-        let weight = match inside {
-            true => (state.weight).times(transmittance(parameters(body.attenuation), hits.t[i])),
-            false => state.weight,
-        };
+        let weight = state.weight.times(left(sample, q, i));
         let next = WideRay {
             travelled: ray.way(hits.t[i]),
             ..ray
@@ -197,6 +195,29 @@ impl Whitted {
             clear
         }
     }
+}
+
+/// What the way leaves of light from hit number `i` back to where its ray began: through a clear body, or through fog.
+pub(crate) fn left(sample: &TileSample<'_>, q: &Scratch, i: usize) -> Vec3<f32> {
+    let hits = &q.hits;
+    if hits.word[i] & INSIDE != 0 {
+        let state = q.paths.state((hits.word[i] & ORDINAL) as usize);
+        let body = sample.job.material(state.medium.unwrap_or(hits.first[i]));
+        return transmittance(parameters(body.attenuation), hits.t[i]);
+    }
+    let air = &sample.job.picture.air;
+    let ray = hits.rays.get(&hits.common, i);
+    let taken = match air.is_foggy() {
+        true => air::share(
+            air.density,
+            air.falloff,
+            ray.origin.y,
+            ray.direction.y,
+            hits.t[i],
+        ),
+        false => 0.0,
+    };
+    Vec3::splat(1.0 - taken)
 }
 
 /// What light loses inside clear bodies, on the way from hit number `i` back to where its ray began.
@@ -356,6 +377,7 @@ pub(crate) fn shade<S: Simd>(
     q: &mut Scratch,
 ) {
     let job = sample.job;
+    let air = &job.picture.air;
     s.vectorize(
         #[inline(always)]
         || {
@@ -377,7 +399,14 @@ pub(crate) fn shade<S: Simd>(
                     direction: hits.ray(s, i).direction,
                 };
                 let followed = load(s, &hits.followed, i);
-                let c = colour(scene.settings().shading, sky, &what, &light, followed);
+                let mut c = colour(scene.settings().shading, sky, &what, &light, followed);
+                if air.is_foggy() {
+                    // there is none in solids
+                    let ray = hits.ray(s, i);
+                    let (d, t) = (ray.direction, load(s, &hits.t, i));
+                    let hazy = through(air, c, ray.origin.y, d, t);
+                    c = Vec3::select(inside, c, hazy);
+                }
                 store3(c, &mut hits.colour, i);
                 if job.wants(Plane::Shadow) {
                     let (lit, all) = (load(s, &hits.shadow, i), load(s, &hits.shares, i));

@@ -21,9 +21,10 @@ use zeroset_scene::camera::Camera;
 use zeroset_scene::film::Plane;
 use zeroset_scene::material::Material;
 use zeroset_scene::settings::{self, Filter};
+use zeroset_shade::air::behind;
 use zeroset_shade::light::discs;
 use zeroset_shade::sampling::{point, scramble};
-use zeroset_shade::sky::{SkyColours, colour};
+use zeroset_shade::sky::SkyColours;
 use zeroset_shade::view::View;
 
 /// All that tiles of one rendering have in common.
@@ -275,10 +276,10 @@ impl<'a> Job<'a> {
         let scene = &self.picture.scene;
         let sky = SkyColours::of(scene.sky());
         for PathRay { ray, state } in q.paths.missed() {
-            let mut seen = colour(&sky, ray.direction.y);
-            if state.is_scattered {
-                seen = seen * sky.ambient;
-            }
+            // what lights the scene, or what is seen
+            let share = if state.is_scattered { sky.ambient } else { 1.0 };
+            let air = &self.picture.air;
+            let mut seen = behind(&sky, air, ray.origin.y, ray.direction, false) * share;
             if state.sees_lights {
                 seen = seen + discs(scene.lights(), ray.direction);
             }
@@ -333,6 +334,7 @@ impl<'a> Job<'a> {
     /// Fills the tile with the sky. (Its colours are so smooth that the middle of a pixel does for all its samples.)
     fn background<S: Simd>(&self, s: S, area: &Area, q: &mut Scratch) {
         let sky = SkyColours::of(self.picture.scene.sky());
+        let air = &self.picture.air;
         s.vectorize(
             #[inline(always)]
             || {
@@ -345,7 +347,7 @@ impl<'a> Job<'a> {
                     let v = splat(s, (area.y + y) as f32 + 0.5);
                     for x in (0..area.width).step_by(S::f32s::LEN) {
                         let ray = primary::ray(&self.view, ramp + ((area.x + x) as f32 + 0.5), v);
-                        let sky = colour(&sky, ray.direction.y);
+                        let sky = behind(&sky, air, ray.origin.y, ray.direction, true);
                         store3(sky, &mut q.planes.colour, y * WIDTH + x);
                         store(splat(s, 0.0), &mut q.planes.coverage, y * WIDTH + x);
                     }

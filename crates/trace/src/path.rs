@@ -4,7 +4,7 @@
 //! finds them: there they are discs, which rays may meet that leave the body.
 
 use crate::ao;
-use crate::integrator::{Integrator, TileSample, add_light, darken, lose, shade};
+use crate::integrator::{Integrator, TileSample, add_light, darken, left, lose, shade};
 use crate::march::ORDINAL;
 use crate::order;
 use crate::paths::{PathRay, PathState};
@@ -21,10 +21,8 @@ use zeroset_scene::light::{Light, Source};
 use zeroset_scene::settings::{Occlusion, Shadow};
 use zeroset_shade::bsdf::scatter;
 use zeroset_shade::light::{towards, width};
-use zeroset_shade::parameters;
 use zeroset_shade::sampling::{cone_direction, decided, hit_seed, scramble};
 use zeroset_shade::sky::SkyColours;
-use zeroset_shade::surface::transmittance;
 
 /// All ways of light, one of many at each surface.
 #[derive(Clone, Copy, Debug)]
@@ -239,11 +237,8 @@ impl PathTracer {
             return None;
         }
         let vector = |[x, y, z]: &[Box<Sheet>; 3]| v3(x[i], y[i], z[i]);
-        let mut weight = state.weight.times(vector(&bounce.weight));
-        if inside {
-            let body = sample.job.material(state.medium.unwrap_or(hits.first[i]));
-            weight = weight.times(transmittance(parameters(body.attenuation), hits.t[i]));
-        }
+        let way = left(sample, q, i);
+        let mut weight = state.weight.times(vector(&bounce.weight)).times(way);
         let strongest = weight.max_component();
         if !(strongest > 0.0 && strongest.is_finite()) {
             return None;

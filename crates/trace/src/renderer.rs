@@ -25,6 +25,7 @@ use zeroset_scene::material::Pattern;
 use zeroset_scene::render::{Evaluations, Observer, Prepared, RenderError, Renderer, Statistics};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Occlusion};
+use zeroset_shade::air::Air;
 use zeroset_shade::skin::has_skins;
 use zeroset_shade::surface::BLURRED;
 use zeroset_shade::view::Region;
@@ -145,6 +146,8 @@ pub struct PreparedScene {
     pub(crate) material: Option<u16>,
     /// The only object there is, if there is only one.
     pub(crate) object: Option<u16>,
+    /// Fog, and the sun before the sky.
+    pub(crate) air: Air<f32>,
     /// Whether rays go on from any material.
     pub(crate) goes_on: bool,
     /// Whether a material is coloured by the orbits of fractals.
@@ -201,6 +204,7 @@ impl PreparedScene {
             (scene.materials().iter()).any(|m| m.roughness < BLURRED || m.transmission > 0.0);
         PreparedScene {
             goes_on,
+            air: Air::of(scene.sky(), scene.lights()),
             renderer,
             skins: has_skins(&scene, &program),
             scene,

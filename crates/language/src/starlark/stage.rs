@@ -7,7 +7,7 @@ use crate::draft::{CameraDraft, FOV, unit};
 use crate::framing::axes_of;
 use glam::{DMat3, DQuat, DVec3, EulerRot, Vec3};
 use zeroset_catalogue::{Dimension, LARGE, SMALL};
-use zeroset_scene::light::{Light, Sky, Source};
+use zeroset_scene::light::{Fog, Light, Sky, Source};
 use zeroset_scene::material::Material;
 use zeroset_scene::scene::Object;
 use zeroset_scene::valid::LIGHTS;
@@ -125,15 +125,44 @@ pub(crate) const ALL: &[Native] = &[
         [
             slot("top", "a clear blue", "Colour straight up."),
             slot("horizon", "between top and white", "Colour at the horizon."),
-            slot("bottom", "a dark grey", "Colour straight down."),
+            slot("bottom", "a third of the horizon", "Colour straight down."),
             slot(
                 "ambient",
                 "0.45",
                 "How much of its light reaches a surface, 0 to 10."
             ),
-            slot("color", "None", "One colour for all three.")
+            slot("color", "None", "One colour for all three."),
+            slot(
+                "sun",
+                "0",
+                "Degrees across of the disc of the first sun(), 0 to 180; the real one has 0.53."
+            )
         ],
         sky
+    ),
+    function!(
+        "fog",
+        "Fog, everywhere or near the ground.",
+        [
+            slot("color", "that of the horizon", "Its colour."),
+            slot(
+                "density",
+                "0.05",
+                "What it takes of the light over a scene unit: 0.05 leaves a third after 20."
+            ),
+            slot(
+                "height",
+                "None",
+                "How far up a third of it is left; the same everywhere without."
+            ),
+            slot("base", "0", "Height at which it has its density."),
+            slot(
+                "glow",
+                "0",
+                "How much it glows towards the first sun(), 0 to 10."
+            )
+        ],
+        fog
     ),
 ];
 
@@ -348,9 +377,36 @@ fn sky(c: &mut Call<'_, '_>) -> Run<Value> {
     let sky = Sky {
         top: top.unwrap_or(default.top),
         horizon: horizon.unwrap_or(default.horizon),
-        bottom: colour("bottom")?.or(one).unwrap_or(default.bottom),
+        // the ground that nobody modelled, in the same light
+        bottom: colour("bottom")?
+            .or(one)
+            .or(horizon.map(|h| h / 3.0))
+            .unwrap_or(default.bottom),
         ambient: c.number_or("ambient", f64::from(default.ambient), 0.0, 10.0)? as f32,
+        sun: c.number_or("sun", 0.0, 0.0, 180.0)?.to_radians() as f32,
+        fog: None,
     };
     c.machine.draft.sky = Some(sky);
+    Ok(Value::None)
+}
+
+fn fog(c: &mut Call<'_, '_>) -> Run<Value> {
+    c.once("the fog")?;
+    let default = Fog::default();
+    let height = match c
+        .get("height")
+        .filter(|given| !matches!(given.value, Value::None))
+    {
+        Some(given) => Some(c.ranged("height", given, SMALL, LARGE)? as f32),
+        None => None,
+    };
+    let fog = Fog {
+        colour: c.get("color").map(|g| c.colour("color", g)).transpose()?,
+        density: c.number_or("density", f64::from(default.density), 0.0, 1e6)? as f32,
+        height,
+        base: c.number_or("base", f64::from(default.base), -LARGE, LARGE)? as f32,
+        glow: c.number_or("glow", f64::from(default.glow), 0.0, 10.0)? as f32,
+    };
+    c.machine.draft.fog = Some(fog);
     Ok(Value::None)
 }

@@ -160,7 +160,9 @@ fn follow(pixel: vec2u, index: u32, path: Onward, span: vec3f, is_first: bool, n
     let light = arriving(path, at, what);
     let followed = go_on(path, at, t, what, marks.first, next);
     var colour = colour_of(what, light, at, seen, followed);
-    if (found.side < 0.0 && (path.medium >= 0.0 || what.finish.w > 0.0)) {
+    if (found.side > 0.0) {
+        colour = hazed(ray, t, colour);
+    } else if (path.medium >= 0.0 || what.finish.w > 0.0) {
         colour *= transmittance(body_of(path, marks.first).attenuation, t);
     }
     counted[COUNT_HITS] += select(0u, 1u, is_first);

@@ -68,7 +68,7 @@ fn shining(path: Onward) -> f32 {
 }
 
 fn sky_of(path: Onward) -> vec3f {
-    var seen = sky_colour(frame.sky_horizon, frame.sky_top, frame.sky_bottom, path.ray.direction.y);
+    var seen = sky_along(path.ray, path.ray.travelled == 0.0);
     if ((path.flags & SCATTERED) != 0u) {
         seen *= frame.ambient;
     }
@@ -100,6 +100,7 @@ fn go_on(path: Onward, at: Surface, t: f32, what: LocalMaterial, material: f32, 
     let tint = select(what.albedo, vec3f(1.0), inside);
     var weight = path.weight * scatter_weight(what.albedo, what.finish, at.normal, at.direction, ior, tint, choice);
     var medium = -1.0;
+    weight *= 1.0 - select(haze(path.ray, t), 0.0, inside);
     if (inside) {
         weight *= transmittance(body.attenuation, t);
         medium = select(material, path.medium, path.medium >= 0.0);

@@ -27,5 +27,5 @@ fn shining(path: Onward) -> f32 {
 
 /// What a ray that goes on sees where it meets nothing.
 fn sky_of(path: Onward) -> vec3f {
-    return sky_colour(frame.sky_horizon, frame.sky_top, frame.sky_bottom, path.ray.direction.y);
+    return sky_along(path.ray, path.ray.travelled == 0.0);
 }

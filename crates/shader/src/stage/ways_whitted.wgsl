@@ -15,7 +15,7 @@ fn go_on(path: Onward, at: Surface, t: f32, what: LocalMaterial, material: f32, 
     let travelled = t + path.ray.travelled;
     let body = body_of(path, material);
     var medium = -1.0;
-    var weight = path.weight;
+    var weight = path.weight * (1.0 - select(haze(path.ray, t), 0.0, inside));
     if (inside) {
         weight *= transmittance(body.attenuation, t);
         medium = select(material, path.medium, path.medium >= 0.0);

@@ -23,11 +23,12 @@ use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::material::Material;
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Filter, Integrator, Settings, Shading};
+use zeroset_shade::air::{self, Air};
 use zeroset_shade::march::MARKS_BEHIND;
 use zeroset_shade::pattern::{Place, colour as pattern_colour};
 use zeroset_shade::sampling::{hit_seed, point, radius, scramble, weight};
 use zeroset_shade::skin::has_skins;
-use zeroset_shade::sky::{SkyColours, colour as sky};
+use zeroset_shade::sky::SkyColours;
 use zeroset_shade::surface::{FAINTEST, Lighting, LocalMaterial, colour, followed_share, mirrored};
 use zeroset_shade::view::{Region, View};
 
@@ -223,7 +224,14 @@ impl Plain<'_> {
         let found = self.march(probe, ray);
         let Some(end) = found.hit else {
             return Sample {
-                colour: glam(sky(&SkyColours::of(self.scene.sky()), d.y)),
+                colour: self.haze(
+                    ray,
+                    air::ENDLESS,
+                    self.sky(
+                        d,
+                        way.reflections + way.refractions == 0 && way.medium.is_none(),
+                    ),
+                ),
                 hit: None,
                 steps: found.steps,
             };
@@ -307,7 +315,10 @@ impl Plain<'_> {
             let seen = self.follow(probe, &next.ray, key, &next.way);
             c += next.share * seen.colour;
         }
-        if side < 0.0 && (way.medium.is_some() || what.transmission > 0.0) {
+        if side > 0.0 {
+            // the rays that go on are part of what fog is before
+            c = self.haze(ray, t, c);
+        } else if way.medium.is_some() || what.transmission > 0.0 {
             let body = self.material(way.medium.unwrap_or(mark.first));
             c *= (-body.attenuation * t).exp();
         }
@@ -325,6 +336,28 @@ impl Plain<'_> {
             hit: Some(hit),
             steps: found.steps,
         }
+    }
+
+    /// The sky along a ray, with the disc of the sun where it is looked at.
+    fn sky(&self, d: Vec3, looks: bool) -> Vec3 {
+        let (sky, lights) = (self.scene.sky(), self.scene.lights());
+        let air = Air::of(sky, lights);
+        let mut seen = sky.colour(d);
+        if looks && air.cosine <= 1.0 {
+            seen += glam(air::disc(air.sun, air.radiance, air.cosine, field(d)));
+        }
+        seen
+    }
+
+    /// A colour behind the air along a ray.
+    fn haze(&self, ray: &Ray, t: f32, c: Vec3) -> Vec3 {
+        let air = Air::of(self.scene.sky(), self.scene.lights());
+        if !air.is_foggy() {
+            return c;
+        }
+        let share = air::share(air.density, air.falloff, ray.o.y, ray.d.y, t);
+        let fog = air::scattered(air.fog, air.sun, air.radiance, air.glow, field(ray.d));
+        c.lerp(glam(fog), share)
     }
 
     /// The rays that go on from a surface, and the share of its reflection that they follow.
@@ -352,7 +385,9 @@ impl Plain<'_> {
         let lost = if inside {
             (-body.attenuation * t).exp()
         } else {
-            Vec3::ONE
+            // what is left of white where fog is black
+            let air = Air::of(self.scene.sky(), self.scene.lights());
+            Vec3::ONE - air::share(air.density, air.falloff, ray.o.y, ray.d.y, t)
         };
         let mut send = |direction: Vec3, side: f32, share: Vec3, next: Way| {
             let weight = way.weight * lost * share;

@@ -268,14 +268,14 @@ const IN_SHADERS: [(&str, &str, &str, &str); 34] = [
     ),
     (
         "a sky that changes evenly",
-        "frame.sky_bottom, path.ray.direction.y)",
-        "frame.sky_bottom, path.ray.direction.y * abs(path.ray.direction.y))",
+        "frame.sky_bottom, ray.direction.y)",
+        "frame.sky_bottom, ray.direction.y * abs(ray.direction.y))",
         "the sky through a pinhole",
     ),
     (
         "a sky upside down",
-        "frame.sky_top, frame.sky_bottom, path.ray.direction.y)",
-        "frame.sky_bottom, frame.sky_top, path.ray.direction.y)",
+        "frame.sky_top, frame.sky_bottom, ray.direction.y)",
+        "frame.sky_bottom, frame.sky_top, ray.direction.y)",
         "the sky in parallel rays",
     ),
     (

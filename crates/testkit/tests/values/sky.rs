@@ -5,7 +5,7 @@ use glam::DVec3;
 use std::f64::consts::TAU;
 use zeroset::scene::film::Plane;
 
-pub const CHECKS: [Check; 5] = [
+pub const CHECKS: [Check; 7] = [
     Check {
         name: "the sky through a pinhole",
         run: behind,
@@ -25,6 +25,14 @@ pub const CHECKS: [Check; 5] = [
     Check {
         name: "mirrors",
         run: mirrors,
+    },
+    Check {
+        name: "fog",
+        run: fog,
+    },
+    Check {
+        name: "the disc of the sun",
+        run: disc,
     },
 ];
 
@@ -174,4 +182,84 @@ fn mirrors(draw: Draw) -> Found {
             .map_err(|e| format!("metallic {metallic}: {e}"))?;
     }
     Ok(())
+}
+
+/// What fog leaves over the way through it, in small steps; then its own colour, and what it shows of the sun.
+fn fog(draw: Draw) -> Found {
+    let eye = Eye {
+        at: DVec3::new(0.0, 2.0, 6.0),
+        target: DVec3::new(0.0, 1.0, 0.0),
+        up: DVec3::Y,
+        lens: Lens::Fov(50.0),
+        size: SIZE,
+    };
+    for (words, height) in [
+        ("density = 0.1", None),
+        ("density = 0.3, height = 0.8, base = 0.5", Some(0.8)),
+    ] {
+        let text = format!(
+            "show(plane(), material(color = \"black\", specular = 0, roughness = 1, emission = {}))
+sun(direction = (0, -1, 2), strength = 0.4, shadow = none())\n{}fog({words}, color = {}, glow = 0.5)",
+            rgb(ALBEDO),
+            line(0.0),
+            rgb([0.5, 0.6, 0.7])
+        );
+        let film = draw(&scene(&text, &eye));
+        let density = |y: f64| match height {
+            None => 0.1,
+            Some(h) => 0.3 * ((0.5 - y) / h).exp(),
+        };
+        let right = |x, y| {
+            let (o, d) = eye.ray(x, y);
+            let met = crate::known::floor((o, d));
+            if met.is_none() && (height.is_some() && d.y < 0.05) {
+                return None;
+            }
+            let far = met.map_or(400.0, |p| (p - o).length());
+            let steps = 4000;
+            let depth: f64 = (0..steps)
+                .map(|i| density(o.y + d.y * far * (f64::from(i) + 0.5) / f64::from(steps)))
+                .sum::<f64>()
+                * far
+                / f64::from(steps);
+            let left = (-depth).exp();
+            let behind = if met.is_some() {
+                light(ALBEDO)
+            } else {
+                along(d.y)
+            };
+            let cosine = d.dot(-DVec3::new(0.0, -1.0, 2.0).normalize());
+            let phase = (1.0 - 0.49) / (1.49 - 1.4 * cosine).powf(1.5);
+            let own = light([0.5, 0.6, 0.7]) + DVec3::splat(0.25 * 0.5 * 0.4 * phase);
+            Some(behind * left + own * (1.0 - left))
+        };
+        compare(&film, &eye, Plane::Colour, 4e-3, right).map_err(|e| format!("{words}: {e}"))?;
+    }
+    Ok(())
+}
+
+/// A white disc of the stated width around the sun, and nowhere else.
+fn disc(draw: Draw) -> Found {
+    let way = DVec3::new(0.2, -0.3, 1.0);
+    let eye = Eye {
+        at: DVec3::ZERO,
+        target: -way,
+        up: DVec3::Y,
+        lens: Lens::Fov(20.0),
+        size: SIZE,
+    };
+    let text = format!(
+        "{BEHIND}sun(direction = (0.2, -0.3, 1), strength = 0.1, shadow = none())\nsky(color = {}, sun = 10)",
+        rgb(TOP)
+    );
+    let film = draw(&scene(&text, &eye));
+    compare(&film, &eye, Plane::Colour, 2e-3, |x, y| {
+        let angle = eye.ray(x, y).1.angle_between(-way).to_degrees();
+        if (angle - 5.0).abs() < 0.05 {
+            return None;
+        }
+        // as much as lights a surface, but no more than twenty times as bright
+        let power = (2.0 * (1.0 - 5f64.to_radians().cos())).recip().min(20.0);
+        Some(light(TOP) + DVec3::splat(if angle < 5.0 { 0.1 * power } else { 0.0 }))
+    })
 }
