@@ -195,9 +195,10 @@ impl Draft {
             .unwrap_or_else(|| vec![key_light(settings.shading)]);
         let bounds = objects.iter().map(|o| o.field.facts().bounds);
         let camera = framing::camera(&self.view.unwrap_or_default(), bounds, settings.size)?;
+        let sky = self.sky.unwrap_or_default();
         let sky = Sky {
-            fog: self.fog,
-            ..self.sky.unwrap_or_default()
+            fog: self.fog.or(sky.fog),
+            ..sky
         };
         let parts = SceneParts {
             name: self.name.unwrap_or_else(|| name.to_string()),

@@ -5,6 +5,7 @@
 //! - [`picture`] and [`tone`]: from a film's linear light to what a screen shows;
 //! - [`format`](mod@format): PNG and OpenEXR;
 //! - [`view`]: every plane of a film as a picture;
+//! - [`denoise`]: pictures without the noise of what was sampled at random;
 //! - [`compare`]: how different two pictures are.
 //!
 //! ```
@@ -21,6 +22,7 @@
 
 pub mod atomic;
 pub mod compare;
+pub mod denoise;
 pub mod display;
 pub mod format;
 pub mod picture;

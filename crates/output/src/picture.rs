@@ -2,6 +2,7 @@
 
 use crate::tone;
 use zeroset_scene::film::{Film, Plane};
+use zeroset_scene::settings::{Tone, ViewTransform};
 
 /// A picture as a screen shows it: sRGB values between 0 and 1 (IEC 61966-2-1), row by row from the top left.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,13 +43,17 @@ impl Rows for Picture {
 pub struct Developed<'f> {
     film: &'f Film,
     gain: f32,
+    tone: Tone,
 }
 
 impl<'f> Developed<'f> {
-    /// A film, brightened by `exposure` stops.
-    pub fn new(film: &'f Film, exposure: f32) -> Developed<'f> {
-        let gain = exposure.exp2();
-        Developed { film, gain }
+    /// A film as a screen shows it.
+    pub fn new(film: &'f Film, transform: ViewTransform) -> Developed<'f> {
+        Developed {
+            film,
+            gain: transform.exposure.exp2(),
+            tone: transform.tone,
+        }
     }
 }
 
@@ -66,10 +71,11 @@ impl Rows for Developed<'_> {
         out.clear();
         let (linear, _) = self.film.plane(Plane::Colour).as_chunks::<3>();
         match linear.get(y as usize * width..(y as usize + 1) * width) {
-            Some(row) => out.extend(
-                row.iter()
-                    .map(|rgb| rgb.map(|c| tone::encode(c * self.gain))),
-            ),
+            Some(row) => {
+                out.extend(row.iter().map(|rgb| {
+                    tone::shown(rgb.map(|c| c * self.gain), self.tone).map(tone::encode)
+                }))
+            }
             None => out.resize(width, [0.0; 3]),
         }
     }
@@ -102,10 +108,10 @@ impl Picture {
         }
     }
 
-    /// The colour plane of a film, brightened by `exposure` stops, clamped to what a screen can show, and sRGB-coded.
+    /// The colour plane of a film, brightened by the exposure, bent to what a screen can show, and sRGB-coded.
     /// What is not a number becomes black, and so does a film without that plane.
-    pub fn develop(film: &Film, exposure: f32) -> Picture {
-        let developed = Developed::new(film, exposure);
+    pub fn develop(film: &Film, transform: ViewTransform) -> Picture {
+        let developed = Developed::new(film, transform);
         let mut pixels = Vec::with_capacity(film.width() as usize * film.height() as usize);
         let mut row = Vec::new();
         for y in 0..film.height() {

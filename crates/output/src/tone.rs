@@ -1,6 +1,14 @@
 //! From linear light to what a file stores: the sRGB curve, and dithering.
 
+use zeroset_number::v3;
+use zeroset_scene::settings::Tone;
 pub use zeroset_shade::tone::{decode, encode};
+
+/// What a screen shows of linear light, itself linear. What is not a number is black.
+pub fn shown(rgb: [f32; 3], tone: Tone) -> [f32; 3] {
+    let [r, g, b] = rgb.map(|c| if c.is_nan() { 0.0 } else { c });
+    zeroset_shade::tone::view(tone, v3(r, g, b)).array()
+}
 
 /// The nearest of 256 levels, dithered: between two levels, the share of pixels that take the upper one is how near the
 /// value is to it, so that a slow gradient shows no bands. The pattern is interleaved gradient noise (Jimenez 2014), fixed

@@ -10,6 +10,7 @@ use zeroset_output::format::{Metadata, exr, png};
 use zeroset_output::picture::Picture;
 use zeroset_output::view::{NOTHING, PlaneView};
 use zeroset_scene::film::{Film, Plane};
+use zeroset_scene::settings::ViewTransform;
 
 /// A film whose every number is known: hits in the left half.
 fn film(width: u32, height: u32) -> Film {
@@ -63,7 +64,7 @@ fn largest_difference(a: &Picture, b: &Picture) -> f32 {
 
 #[test]
 fn png_keeps_the_picture_to_its_depth() {
-    let picture = Picture::develop(&film(37, 23), 0.5);
+    let picture = Picture::develop(&film(37, 23), ViewTransform::standard(0.5));
     for (depth, error) in [
         (Depth::Eight, 1.0 / 255.0),
         (Depth::Sixteen, 0.51 / 65535.0),
@@ -132,7 +133,12 @@ fn exr_keeps_every_number_of_every_plane() {
         "{attributes}"
     );
     let read_back = saved("a.exr", |w| exr::write(w, &film, &notes)).unwrap();
-    assert!(largest_difference(&read_back, &Picture::develop(&film, 0.0)) < 1e-6);
+    assert!(
+        largest_difference(
+            &read_back,
+            &Picture::develop(&film, ViewTransform::standard(0.0))
+        ) < 1e-6
+    );
 }
 
 #[test]
@@ -181,7 +187,7 @@ fn equal_pictures_are_equal_files() {
         let mut bytes = Vec::new();
         png::write(
             &mut bytes,
-            &Picture::develop(&film(50, 20), 0.0),
+            &Picture::develop(&film(50, 20), ViewTransform::standard(0.0)),
             Depth::Eight,
             &Metadata::new("a"),
         )
@@ -322,7 +328,7 @@ fn views_show_their_plane() {
     for plane in Plane::ALL {
         let mut view = PlaneView {
             plane,
-            exposure: 0.0,
+            transform: ViewTransform::standard(0.0),
             legend: false,
             objects: &names,
         };
@@ -358,7 +364,7 @@ fn views_show_their_plane() {
     }
     let objects = PlaneView {
         plane: Plane::Object,
-        exposure: 0.0,
+        transform: ViewTransform::standard(0.0),
         legend: false,
         objects: &[],
     }
@@ -367,7 +373,7 @@ fn views_show_their_plane() {
     assert!(colour(0) != colour(1) && colour(1) != colour(2) && colour(0) == colour(3));
     let normal = PlaneView {
         plane: Plane::Normal,
-        exposure: 0.0,
+        transform: ViewTransform::standard(0.0),
         legend: false,
         objects: &[],
     }
@@ -399,7 +405,7 @@ proptest! {
         for (i, x) in film.plane_mut(Plane::ALL[plane]).iter_mut().enumerate() {
             *x = numbers[i % 64];
         }
-        let view = PlaneView { plane: Plane::ALL[plane], exposure: 1.0, legend: true, objects: &["a".to_owned()] };
+        let view = PlaneView { plane: Plane::ALL[plane], transform: ViewTransform::standard(1.0), legend: true, objects: &["a".to_owned()] };
         let picture = view.of(&film);
         prop_assert!(picture.pixels().as_flattened().iter().all(|c| (0.0..=1.0).contains(c)));
     }
@@ -428,7 +434,7 @@ fn files_tell_how_far_they_are_and_end_when_they_are_not_wanted() {
     use std::sync::atomic::AtomicU64;
     use zeroset_output::atomic::{WriteFailure, write_atomically};
     let film = film(300, 200);
-    let picture = Picture::develop(&film, 0.0);
+    let picture = Picture::develop(&film, ViewTransform::standard(0.0));
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a");
     let total = 300 * 200;

@@ -98,10 +98,10 @@ impl Default for Fog {
 impl Default for Sky {
     fn default() -> Self {
         Sky {
-            top: Vec3::new(0.36, 0.52, 0.78),
+            top: Vec3::new(0.44, 0.57, 0.77),
             horizon: Vec3::new(0.80, 0.86, 0.92),
             bottom: Vec3::new(0.30, 0.29, 0.28),
-            ambient: 0.45,
+            ambient: 0.5,
             sun: 0.0,
             fog: None,
         }

@@ -6,7 +6,9 @@
 //! compile.
 
 use crate::film::Plane;
-use crate::settings::{Antialias, Filter, Integrator, March, Normals, Occlusion, Shading, Shadow};
+use crate::settings::{
+    Antialias, Filter, Integrator, March, Normals, Occlusion, Shading, Shadow, Tone,
+};
 use std::fmt;
 use zeroset_catalogue::{LARGE, SMALL};
 
@@ -407,13 +409,14 @@ impl Group {
 }
 
 /// Every kind of methods.
-pub const GROUPS: [Group; 9] = [
+pub const GROUPS: [Group; 10] = [
     Group::of::<March>(),
     Group::of::<Normals>(),
     Group::of::<Shadow>(),
     Group::of::<Occlusion>(),
     Group::of::<Shading>(),
     Group::of::<Integrator>(),
+    Group::of::<Tone>(),
     Group::of::<Antialias>(),
     Group::of::<Filter>(),
     Group::of::<Plane>(),
@@ -636,6 +639,7 @@ mod tests {
         sound::<Occlusion>();
         sound::<Shading>();
         sound::<Integrator>();
+        sound::<Tone>();
         sound::<Antialias>();
         sound::<Filter>();
         sound::<Plane>();

@@ -174,10 +174,10 @@ choice! {
     /// Shape of a pixel's filter.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
     pub enum Filter("filter", "a filter", "Filters") {
+        /// Falls off evenly: no rings around what is brighter than white.
+        Tent("tent", "Tent", "two pixels wide"),
         /// Four pixels wide, B = C = 1/3: sharp, with little ringing.
         Mitchell("mitchell", "Mitchell", "Mitchell and Netravali 1988"),
-        /// Falls off evenly: a little soft.
-        Tent("tent", "Tent", "two pixels wide"),
         /// Every ray of the pixel counts alike.
         Box("box", "Box", "one pixel wide"),
     }
@@ -193,7 +193,7 @@ choice! {
             /// Rays a pixel.
             samples: u32 = 4, Param::new("Rays a pixel", Unit::Count, SAMPLES).usual(1.0, 256.0).logarithmic();
             /// How they are weighted.
-            filter: Filter = Filter::Mitchell, Param::new("Filter", Unit::Count, Allowed::between(0.0, 0.0))
+            filter: Filter = Filter::Tent, Param::new("Filter", Unit::Count, Allowed::between(0.0, 0.0))
         },
         /// One ray through the middle of each pixel.
         None("none", "None", "one ray a pixel"),
@@ -244,6 +244,40 @@ choice! {
     }
 }
 
+choice! {
+    /// How light that is brighter than a screen can show is shown.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+    pub enum Tone("tone", "a tone curve", "Tone curves") {
+        /// As it is up to seven tenths of white, then ever more slowly.
+        Soft("soft", "Soft", "a shoulder above 0.7"),
+        /// With the contrast of film.
+        Filmic("filmic", "Filmic", "ACES as fitted by Narkowicz 2016"),
+        /// Bright colours grow pale, as on film.
+        Agx("agx", "AgX", "Sobotka 2022, as fitted by Wrensch 2023"),
+        /// As it is, cut off at white.
+        Standard("standard", "Standard", "IEC 61966-2-1"),
+    }
+}
+
+/// How linear light becomes a picture on a screen.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ViewTransform {
+    /// Stops brighter or darker.
+    pub exposure: f32,
+    /// What becomes of light beyond white.
+    pub tone: Tone,
+}
+
+impl ViewTransform {
+    /// Light as it is, so many stops brighter, cut off at white.
+    pub const fn standard(exposure: f32) -> ViewTransform {
+        ViewTransform {
+            exposure,
+            tone: Tone::Standard,
+        }
+    }
+}
+
 /// All choices of a rendering.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -276,6 +310,8 @@ pub struct Settings {
     pub seed: u32,
     /// Exposure in stops, applied when linear light becomes a picture.
     pub exposure: f32,
+    /// What becomes then of light that is brighter than a screen can show.
+    pub tone: Tone,
 }
 
 impl Settings {
@@ -295,7 +331,16 @@ impl Settings {
         antialias: Antialias::ALL[0],
         seed: 0,
         exposure: 0.0,
+        tone: Tone::ALL[0],
     };
+
+    /// How linear light becomes a picture on a screen.
+    pub fn view_transform(&self) -> ViewTransform {
+        ViewTransform {
+            exposure: self.exposure,
+            tone: self.tone,
+        }
+    }
 
     /// [`Settings::max_steps`] as a parameter.
     pub const MAX_STEPS: Param = Param {

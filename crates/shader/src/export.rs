@@ -12,6 +12,7 @@ use std::fmt::Write;
 use zeroset_field::program::Limits;
 use zeroset_scene::render::RenderError;
 use zeroset_scene::scene::Scene;
+use zeroset_scene::settings;
 
 /// Parameters, table rows, pixels of images, samples of grids and instructions that a file may have, of each: compilers of shaders give up on more.
 const LARGEST: usize = 4000;
@@ -230,7 +231,12 @@ fn body(scene: &Scene) -> Result<String, ExportError> {
     let _ = writeln!(text, "const PIVOT: f32 = {};", number(pivot(&parts.frame)));
     text += &parts.key.picture().text;
     text.push('\n');
-    text += crate::formulas::text("srgb");
+    text += crate::formulas::text(match scene.settings().tone {
+        settings::Tone::Soft => "srgb@Soft",
+        settings::Tone::Filmic => "srgb@Filmic",
+        settings::Tone::Agx => "srgb@Agx",
+        settings::Tone::Standard => "srgb@Standard",
+    });
     text.push('\n');
     text += include_str!("stage/picture.wgsl");
     Ok(text)

@@ -5,7 +5,7 @@
 use std::collections::HashMap;
 use std::sync::LazyLock;
 use zeroset_number::{Argument, Expr, Ops, Real, Recorder, Vec2, Vec3, v2, wgsl};
-use zeroset_scene::settings::{Filter, Shading};
+use zeroset_scene::settings::{Filter, Shading, Tone};
 use zeroset_shade::pattern::{self, Place};
 use zeroset_shade::sky::{self, SkyColours};
 use zeroset_shade::surface::{self, Lighting, LocalMaterial};
@@ -259,7 +259,10 @@ formulas! {
         occlusion::share(clear, behind, per_width, weight);
 
     // tone curves
-    fn srgb(linear: Vec3) = linear.map(tone::encode);
+    fn srgb@Soft(linear: Vec3) = tone::view(Tone::Soft, linear).map(tone::encode);
+    fn srgb@Filmic(linear: Vec3) = tone::view(Tone::Filmic, linear).map(tone::encode);
+    fn srgb@Agx(linear: Vec3) = tone::view(Tone::Agx, linear).map(tone::encode);
+    fn srgb@Standard(linear: Vec3) = tone::view(Tone::Standard, linear).map(tone::encode);
 }
 
 fn linear(v: Vec2<Expr<'_>>) -> Linear<Expr<'_>> {

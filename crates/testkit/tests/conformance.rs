@@ -435,8 +435,8 @@ const FAULTS: [(&str, &str, &str, Plane); 10] = [
     ),
     (
         "a sky that is dark",
-        "frame.sky_bottom, frame.ambient,",
-        "frame.sky_bottom, 0.5 * frame.ambient,",
+        "return frame.ambient;",
+        "return 0.5 * frame.ambient;",
         Plane::Colour,
     ),
     (

@@ -12,7 +12,7 @@ use zeroset::output::format::read::read;
 use zeroset::output::picture::Picture;
 use zeroset::scene::film::{Film, Plane};
 use zeroset::scene::render::{Renderer, Silent};
-use zeroset::scene::settings::Antialias;
+use zeroset::scene::settings::{Antialias, ViewTransform};
 use zeroset::trace::CpuRenderer;
 use zeroset_testkit::scenes;
 
@@ -58,7 +58,7 @@ fn check(path: &Path, group: &str, film: &Film) -> Result<(), String> {
     let file = Path::new(group).join(path.with_extension("png").file_name().unwrap());
     let golden = golden(&file);
     let name = file.display();
-    let picture = Picture::develop(film, 0.0);
+    let picture = Picture::develop(film, ViewTransform::standard(0.0));
     if std::env::var_os("ZEROSET_BLESS").is_some() {
         save(&golden, &picture);
     }
@@ -144,6 +144,10 @@ fn a_wrong_light_is_noticed() {
         .unwrap()
         .film;
     let kept = read(&golden("papers/tomczak_sphere_ground_1.png")).unwrap();
-    let found = compare(&kept, &Picture::develop(&film, 0.0)).unwrap();
+    let found = compare(
+        &kept,
+        &Picture::develop(&film, ViewTransform::standard(0.0)),
+    )
+    .unwrap();
     assert!(found.flip_mean > ALLOWED, "FLIP {}", found.flip_mean);
 }

@@ -245,9 +245,29 @@ fn occlude<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
             Occlusion::Hemisphere { .. } | Occlusion::Obscurance { .. }
         )
     };
-    if methods.len() > 1 {
-        q.hits
-            .sort_by_method(methods.len(), &picture.method_of, &mut q.sorting);
+    // what is random is not shared: its mean over the samples is what counts
+    let shares = sample.job.samples() > 1 && q.paths.is_from_eye() && !methods.iter().any(random);
+    let given = match shares {
+        true => q.shared.look_up(solid, sample.index, &q.hits),
+        false => 0,
+    };
+    // by method, and what is given behind what is found
+    let key =
+        |object: f32, given: bool| 2 * method_of(&picture.method_of, object) + usize::from(given);
+    let keys = 2 * methods.len();
+    let mut ends = std::mem::take(&mut q.ends);
+    ends.clear();
+    ends.resize(keys, 0);
+    if methods.len() > 1 || given > 0 {
+        let shared = &q.shared;
+        let is_given = |i: usize| given > 0 && shared.is_given(i);
+        let objects = &q.hits.object;
+        (0..q.hits.count).for_each(|i| ends[key(objects[i], is_given(i))] += 1);
+        q.sorting
+            .by_key(q.hits.count, keys, |i| key(objects[i], is_given(i)));
+        q.hits.sort(&mut q.sorting);
+    } else {
+        ends[0] = q.hits.count;
     }
     if methods.iter().any(random) {
         let seed = picture.scene.settings().seed;
@@ -263,19 +283,15 @@ fn occlude<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
         }
     }
     let mut from = 0;
-    for (number, method) in methods.iter().enumerate() {
-        let to = if methods.len() == 1 {
-            q.hits.count
-        } else {
-            let of = |object: &f32| method_of(&picture.method_of, *object);
-            from + q.hits.object[from..q.hits.count]
-                .iter()
-                .take_while(|o| of(o) == number)
-                .count()
-        };
-        ao::occlusion(s, solid, *method, from..to, q);
-        from = to;
+    for (method, counts) in methods.iter().zip(ends.as_chunks::<2>().0) {
+        let [found, given] = counts.map(|count| {
+            from += count;
+            from - count..from
+        });
+        ao::occlusion(s, solid, *method, found, q);
+        q.shared.give(&mut q.hits, given);
     }
+    q.ends = ends;
     if !solid.close {
         // what was read is no bound: nothing is known to be empty
         let count = q.hits.count;
@@ -288,6 +304,9 @@ fn occlude<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
         for (bent, normal) in hits.bent.iter_mut().zip(&hits.normal) {
             bent[i] = normal[i];
         }
+    }
+    if shares {
+        q.shared.keep(sample.index, &q.hits);
     }
 }
 
@@ -426,9 +445,8 @@ fn method_of(methods: &[usize], object: f32) -> usize {
 }
 
 impl Hits {
-    /// Orders the hits by the occlusion method of their objects.
-    fn sort_by_method(&mut self, count: usize, methods: &[usize], sorting: &mut Sorting) {
-        sorting.by_key(self.count, count, |i| method_of(methods, self.object[i]));
+    /// Puts the hits in another order.
+    fn sort(&mut self, sorting: &mut Sorting) {
         let columns = [
             &mut self.t,
             &mut self.f,

@@ -110,6 +110,7 @@ impl<'a> Job<'a> {
             stop,
         );
         q.planes.clear();
+        q.shared.clear();
         let mut hits = 0;
         for index in self.taken.clone() {
             if stop.is_set() {

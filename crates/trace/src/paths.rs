@@ -58,6 +58,11 @@ impl Paths {
         self.waiting.iter_mut().for_each(Vec::clear);
     }
 
+    /// Whether the queue holds rays from the eye.
+    pub(crate) fn is_from_eye(&self) -> bool {
+        self.followed.is_empty()
+    }
+
     /// The state of a ray of the queue.
     pub(crate) fn state(&self, number: usize) -> PathState {
         (self.followed.get(number)).map_or(PathState::from_eye(number), |path| path.state)

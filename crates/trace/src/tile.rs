@@ -1,5 +1,6 @@
 //! The part of a picture that one thread works on at a time, and all the memory that this takes.
 
+use crate::ao::Shared;
 use crate::march::ITERATIONS;
 use crate::order::Sorting;
 use crate::path::BounceColumns;
@@ -273,6 +274,10 @@ pub(crate) struct Scratch {
     pub(crate) hits: Hits,
     /// Rays that go on from hits.
     pub(crate) paths: Paths,
+    /// Occlusion that several samples share.
+    pub(crate) shared: Shared,
+    /// How many hits there are of each kind of occlusion.
+    pub(crate) ends: Vec<usize>,
     /// Evaluations of the rays that hit nothing, by pixel.
     pub(crate) steps: Box<Sheet>,
     pub(crate) exhausted: Vec<Exhausted>,
@@ -364,6 +369,8 @@ impl Scratch {
                 colour: sheet3(),
             },
             paths: Paths::new(),
+            shared: Shared::new(),
+            ends: Vec::new(),
             steps: Sheet::boxed(),
             exhausted: Vec::with_capacity(WIDTH * HEIGHT),
             sorting: Sorting::new(),

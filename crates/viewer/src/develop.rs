@@ -51,12 +51,13 @@ pub(crate) fn develop(film: &Film, view: &PlaneView<'_>) -> ColorImage {
         );
     }
     let curve = &CURVE[..];
-    let gain = view.exposure.exp2();
+    let (gain, tone) = (view.transform.exposure.exp2(), view.transform.tone);
     let (linear, _) = film.plane(Plane::Colour).as_chunks::<3>();
     let mut out = Vec::with_capacity(linear.len());
     for (y, row) in (0..).zip(linear.chunks_exact(size[0].max(1))) {
         for (x, rgb) in (0..).zip(row) {
-            out.push(level(rgb.map(|c| encode(curve, c * gain)), x, y));
+            let shown = tone::shown(rgb.map(|c| c * gain), tone);
+            out.push(level(shown.map(|c| encode(curve, c)), x, y));
         }
     }
     ColorImage::new(size, out)
@@ -109,7 +110,7 @@ mod tests {
         }
         let view = PlaneView {
             plane: Plane::Colour,
-            exposure: 0.5,
+            transform: zeroset_scene::settings::ViewTransform::standard(0.5),
             legend: false,
             objects: &[],
         };

@@ -58,6 +58,7 @@ impl Look {
         let plain = |look: &Look| Look {
             settings: Settings {
                 exposure: 0.0,
+                tone: zeroset_scene::settings::Tone::Soft,
                 ..look.settings
             },
             plane: Plane::Colour,
@@ -593,7 +594,7 @@ impl Worker<'_> {
         for (look, take) in request.looks.iter().zip(films) {
             let view = PlaneView {
                 plane: look.plane,
-                exposure: look.settings.exposure,
+                transform: look.settings.view_transform(),
                 legend: false,
                 objects: &[],
             };

@@ -41,7 +41,7 @@ pub(crate) fn save(session: &Session, name: &str) -> Result<PathBuf, String> {
             let names: Vec<String> = scene.objects().iter().map(|o| o.name.clone()).collect();
             let view = PlaneView {
                 plane: look.plane,
-                exposure: look.settings.exposure,
+                transform: look.settings.view_transform(),
                 legend: true,
                 objects: &names,
             };

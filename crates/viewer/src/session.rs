@@ -354,7 +354,8 @@ fn merged(before: &Settings, edited: &Settings, now: &Settings) -> Settings {
         occlusion,
         antialias,
         seed,
-        exposure
+        exposure,
+        tone
     );
     Settings {
         size: now.size,

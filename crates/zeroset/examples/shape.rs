@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let scene = parts.build()?.with_size([320, 240])?;
 
     let film = CpuRenderer::new(None)?.render(&scene, &Silent)?.film;
-    let picture = Picture::develop(&film, scene.settings().exposure);
+    let picture = Picture::develop(&film, scene.settings().view_transform());
     atomic::write_atomically(&path, |file| {
         format::png::write(
             file,

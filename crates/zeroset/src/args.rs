@@ -12,7 +12,9 @@ use zeroset_language::limits::Limits;
 use zeroset_scene::film::Plane;
 use zeroset_scene::methods::Choice;
 use zeroset_scene::scene::Scene;
-use zeroset_scene::settings::{Antialias, Integrator, March, Normals, Occlusion, Shading, Shadow};
+use zeroset_scene::settings::{
+    Antialias, Filter, Integrator, March, Normals, Occlusion, Shading, Shadow, Tone,
+};
 
 /// Renders signed distance fields: from a scene of a few lines to a picture.
 #[derive(Debug, Parser)]
@@ -150,6 +152,9 @@ pub(crate) struct RenderArgs {
     /// Frames a second, which says what time it is at a frame: --time plus frame / fps
     #[arg(long, value_name = "N", default_value_t = 30.0, value_parser = crate::values::positive, requires = "frames")]
     pub fps: f64,
+    /// Take the noise out of the picture that paths traced at random, guided by the colours, normals and distances of surfaces
+    #[arg(long)]
+    pub denoise: bool,
     /// Seconds that rendering a picture may take, after the scene is loaded. Then the file is written, whole, with what
     /// there is: the tiles that are finished, and a picture of fewer rays or of larger pixels in all other places. What
     /// share is finished is said on standard error, and the exit code is 5
@@ -178,6 +183,11 @@ pub(crate) struct Methods {
     pub aa: Option<Chosen<Antialias>>,
     #[arg(long, value_name = "METHOD", help_heading = "Methods", help = help::<Shading>("How light becomes colour"))]
     pub shading: Option<Chosen<Shading>>,
+    /// Rays a pixel, whatever the scene states: as many as --aa supersample,samples=N
+    #[arg(long, value_name = "N", help_heading = "Methods", value_parser = clap::value_parser!(u32).range(1..))]
+    pub spp: Option<u32>,
+    #[arg(long, value_name = "METHOD", help_heading = "Methods", help = help::<Tone>("How light beyond white is shown"))]
+    pub tone: Option<Chosen<Tone>>,
     #[arg(long, value_name = "METHOD", help_heading = "Methods", help = help::<Integrator>("Which ways light takes to the eye"))]
     pub integrator: Option<Chosen<Integrator>>,
 }
@@ -194,6 +204,15 @@ impl Methods {
         put("normals", self.normals, &mut settings.normals, limits)?;
         put("ao", self.ao, &mut settings.occlusion, limits)?;
         put("aa", self.aa, &mut settings.antialias, limits)?;
+        if let Some(samples) = self.spp {
+            let filter = match settings.antialias {
+                Antialias::Supersample { filter, .. } => filter,
+                Antialias::None => Filter::default(),
+            };
+            let chosen = Chosen(Antialias::Supersample { samples, filter });
+            put("spp", Some(chosen), &mut settings.antialias, limits)?;
+        }
+        put("tone", self.tone, &mut settings.tone, limits)?;
         put("shading", self.shading, &mut settings.shading, limits)?;
         put(
             "integrator",

@@ -49,7 +49,7 @@
 //! let frame = CpuRenderer::new(Some(2))?.render(&loaded.scene, &Silent)?;
 //! assert!(frame.statistics.hits > 100);
 //!
-//! let picture = Picture::develop(&frame.film, loaded.scene.settings().exposure);
+//! let picture = Picture::develop(&frame.film, loaded.scene.settings().view_transform());
 //! let folder = std::env::temp_dir().join(format!("zeroset-doc-{}", std::process::id()));
 //! atomic::create_folder(&folder)?;
 //! atomic::write_atomically(&folder.join("bitten.png"), |writer| {

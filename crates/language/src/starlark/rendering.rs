@@ -8,7 +8,7 @@ use crate::report::suggestion;
 use std::sync::LazyLock;
 use zeroset_scene::methods::{self, Choice, Group, Kind, Param};
 use zeroset_scene::settings::{
-    Antialias, Integrator, March, Normals, Occlusion, Settings, Shading, Shadow,
+    Antialias, Integrator, March, Normals, Occlusion, Settings, Shading, Shadow, Tone,
 };
 
 /// The functions.
@@ -99,6 +99,7 @@ fn slots() -> &'static [Slot] {
             "Which ways light takes to the eye",
         ),
         number(Settings::EXPOSURE),
+        choice(Group::of::<Tone>(), "How light beyond white is shown"),
         slot(
             "seed",
             "0",
@@ -232,6 +233,7 @@ fn render(c: &mut Call<'_, '_>) -> Run<Value> {
         antialias: c.method(Thing::antialias)?,
         seed: c.count_or("seed", d.seed, 0, u32::MAX)?,
         exposure: c.real(Settings::EXPOSURE)?,
+        tone: c.worded()?,
     };
     c.machine.draft.settings = Some(settings);
     Ok(Value::None)

@@ -128,7 +128,7 @@ pub(crate) const ALL: &[Native] = &[
             slot("bottom", "a third of the horizon", "Colour straight down."),
             slot(
                 "ambient",
-                "0.45",
+                "0.5",
                 "How much of its light reaches a surface, 0 to 10."
             ),
             slot("color", "None", "One colour for all three."),

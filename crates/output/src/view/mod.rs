@@ -15,6 +15,7 @@ pub(crate) use legend::Legend;
 pub use legend::LegendKey;
 pub(crate) use scale::Scale;
 use zeroset_scene::film::{Film, Plane};
+use zeroset_scene::settings::ViewTransform;
 
 /// Where nothing is hit: a slate that no colour map holds.
 pub const NOTHING: [f32; 3] = [0.16, 0.18, 0.22];
@@ -24,8 +25,8 @@ pub const NOTHING: [f32; 3] = [0.16, 0.18, 0.22];
 pub struct PlaneView<'a> {
     /// Which one.
     pub plane: Plane,
-    /// For [`Plane::Colour`]: stops.
-    pub exposure: f32,
+    /// For [`Plane::Colour`]: how light becomes a picture.
+    pub transform: ViewTransform,
     /// Whether a strip at the right side explains the colours. It makes the picture wider, and is left out where there
     /// are no numbers to explain or the picture is less than 64 pixels high.
     pub legend: bool,
@@ -54,7 +55,7 @@ impl PlaneView<'_> {
         let is_hit = |i: usize| depth.get(i).is_none_or(|d| d.is_finite());
         let (triples, _) = plane.as_chunks::<3>();
         match self.plane {
-            Plane::Colour => Picture::develop(film, self.exposure),
+            Plane::Colour => Picture::develop(film, self.transform),
             Plane::Albedo => at_pixels(film, |i| triples[i].map(crate::tone::encode)),
             Plane::Normal => at_pixels(film, |i| match triples[i] {
                 [0.0, 0.0, 0.0] => NOTHING,

@@ -100,10 +100,10 @@ fn a_colour_reaches_the_file() {
         let scene = with(
             &text,
             &eye,
-            &format!("ao = none(), aa = {aa}, exposure = {exposure}"),
+            &format!("ao = none(), aa = {aa}, exposure = {exposure}, tone = \"standard\""),
         );
         let film = on(&renderer, &scene);
-        let picture = Picture::develop(&film, scene.settings().exposure);
+        let picture = Picture::develop(&film, scene.settings().view_transform());
         for depth in [Depth::Eight, Depth::Sixteen] {
             let mut bytes = Vec::new();
             write(&mut bytes, &picture, depth, &Metadata::new("known")).unwrap();

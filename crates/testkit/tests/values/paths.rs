@@ -66,7 +66,9 @@ fn mean(
     let n = f64::from(count);
     let (found, wanted) = (found / n, wanted / n);
     let off = (found - wanted).abs() / wanted.abs().max(DVec3::splat(0.02));
-    if count < 50 || !(off.max_element() < tolerance) {
+    // what is no number is not close
+    let is_close = off.max_element() < tolerance;
+    if count < 50 || !is_close {
         return Err(format!("{found} instead of {wanted} in {count} pixels"));
     }
     Ok(())

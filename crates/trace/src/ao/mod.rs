@@ -3,6 +3,9 @@
 mod cones;
 mod hemisphere;
 mod samples;
+mod shared;
+
+pub(crate) use shared::Shared;
 
 use crate::shadow::Hard;
 use crate::simd::{load, load_words, sided};

@@ -10,6 +10,7 @@ pub fn view(ui: &mut Ui, session: &mut Session) {
     let look = session.edited();
     choose(ui, "Show", &mut look.plane);
     real(ui, &Settings::EXPOSURE, &mut look.settings.exposure);
+    choose(ui, "Tone curve", &mut look.settings.tone);
 }
 
 /// Every method that the edited look can have.

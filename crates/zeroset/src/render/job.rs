@@ -16,6 +16,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use zeroset_language::load::{Loaded, Options};
 use zeroset_output::atomic::probe;
+use zeroset_output::denoise;
 use zeroset_output::format::png::Depth;
 use zeroset_output::format::{Metadata, exr, png};
 use zeroset_output::picture::{Developed, Rows};
@@ -87,7 +88,7 @@ impl<'a> Job<'a> {
             }
             label = format!("{label} {}/{}", number - frames.start + 1, frames.len());
         }
-        let (planes, copies) = planes(&path, self.args.view)?;
+        let (planes, copies) = planes(&path, self.args.view, self.args.denoise)?;
         (options.limits)
             .check_picture(scene.settings().size, planes, copies)
             .map_err(|e| Failure::new(Exit::Scene, e.to_string()))?;
@@ -113,7 +114,10 @@ impl<'a> Job<'a> {
             }
         };
         progress.bar.finish_and_clear();
-        let (rendered, used, lack) = rendered?;
+        let (mut rendered, used, lack) = rendered?;
+        if self.args.denoise {
+            rendered.film = denoise::denoise(&rendered.film);
+        }
         let lack_words = lack.as_ref().map(limited::Lack::words);
         self.write(
             &path,
@@ -172,7 +176,7 @@ impl<'a> Job<'a> {
                 let names: Vec<String> = scene.objects().iter().map(|o| o.name.clone()).collect();
                 let view = PlaneView {
                     plane: self.args.view,
-                    exposure: scene.settings().exposure,
+                    transform: scene.settings().view_transform(),
                     legend: !self.args.no_legend,
                     objects: &names,
                 };
@@ -188,7 +192,7 @@ impl<'a> Job<'a> {
                 };
                 if view.plane == Plane::Colour {
                     // without a second copy of a picture that may be large
-                    write(&Developed::new(&rendered.film, view.exposure))
+                    write(&Developed::new(&rendered.film, view.transform))
                 } else {
                     write(&view.of(&rendered.film))
                 }
@@ -238,8 +242,14 @@ impl<'a> Job<'a> {
     }
 }
 
+/// Bytes a pixel that taking the noise out takes: another film, light and variances twice, and what guides.
+const DENOISING: u64 = 48 + 2 * 16 + 32;
+
 /// The planes that a file needs, and the bytes a pixel that writing it takes beside the film.
-fn planes(path: &Path, view: Plane) -> Result<(&'static [Plane], u64), Failure> {
+fn planes(path: &Path, view: Plane, denoise: bool) -> Result<(&'static [Plane], u64), Failure> {
+    if denoise && view == Plane::Colour && matches!(Container::of(path)?, Container::Png) {
+        return Ok((&denoise::GUIDES, DENOISING));
+    }
     Ok(match Container::of(path)? {
         // all numbers once more, one plane after the other, and what they are compressed to
         Container::Exr => (&Plane::ALL, 2 * 64),

@@ -119,7 +119,7 @@ fn every_plane_can_be_seen() {
 fn an_exr_shows_what_a_png_shows() {
     let folder = Folder::with(BALL);
     folder.good("render scene.star --size 48x32 -o a.exr");
-    folder.good("render scene.star --size 48x32 -o a.png --bits 16");
+    folder.good("render scene.star --size 48x32 -o a.png --bits 16 --tone standard");
     let found = folder.good("compare a.exr a.png --json").json();
     assert!(found["largest"].as_f64().unwrap() < 2e-5, "{found}");
 }
@@ -136,6 +136,13 @@ fn methods_are_chosen_by_flags() {
     assert_eq!(settings["occlusion"]["bend"], 0.5);
     assert_eq!(settings["antialias"]["method"], "none");
     assert_eq!(settings["shading"], "lambert");
+    let command =
+        "render scene.star --size 16x12 --json --integrator path,depth=3 --spp 6 --tone agx";
+    let settings = folder.good(command).json()["settings"].clone();
+    assert_eq!(settings["integrator"]["depth"], 3);
+    assert_eq!(settings["antialias"]["samples"], 6);
+    assert_eq!(settings["tone"], "agx");
+    folder.bad("render scene.star --spp 0", 2, &["0", "1.."]);
     folder.write("floor.star", "show(sphere().move(y = 1))\nshow(plane())\n");
     let command = "render floor.star --size 32x24 --view shadow --no-legend";
     folder.good(&format!("{command} -o lit.png --shadow none"));

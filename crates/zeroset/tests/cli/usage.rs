@@ -110,7 +110,7 @@ fn values_that_cannot_be_are_refused_with_what_is_allowed() {
             "--ao hemisphere=9999",
             &["`rays` of --ao is 9999", "1 to 4096", "--limit samples"],
         ),
-        ("--aa supersample,filter=round", &["mitchell, tent, box"]),
+        ("--aa supersample,filter=round", &["tent, mitchell, box"]),
         ("--normals 26", &["samples18", "samples26"]),
         ("--bits 12", &["8, 16"]),
         ("--threads 0", &["1..=1024"]),
