@@ -245,8 +245,9 @@ fn occlude<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
             Occlusion::Hemisphere { .. } | Occlusion::Obscurance { .. }
         )
     };
-    // what is random is not shared: its mean over the samples is what counts
-    let shares = sample.job.samples() > 1 && q.paths.is_from_eye() && !methods.iter().any(random);
+    // what takes a few evaluations is not worth it, and of what is random the mean over the samples is what counts
+    let is_dear = |m: &Occlusion| matches!(m, Occlusion::Cones { .. });
+    let shares = sample.job.samples() > 1 && q.paths.is_from_eye() && methods.iter().all(is_dear);
     let given = match shares {
         true => q.shared.look_up(solid, sample.index, &q.hits),
         false => 0,

@@ -44,7 +44,7 @@ impl Observer for Deadline {
     }
 }
 
-/// Renders small pictures of a ray a pixel, larger and larger ones until one says enough.
+/// Renders small pictures of few rays a pixel, larger and larger ones until one says enough.
 ///
 /// # Errors
 /// See [`RenderError`].
@@ -59,7 +59,13 @@ pub(crate) fn cost(scene: &Scene) -> Result<Cost, RenderError> {
     let pixels = u64::from(size[0]) * u64::from(size[1]);
     let bytes = renderer.memory(scene, &[Plane::Colour]) + 12 * pixels;
     let mut plain = scene.clone();
-    plain.edit(|parts| parts.settings.antialias = Antialias::None)?;
+    // as many rays a pixel as share what they find
+    let few = rays_per_pixel.min(4);
+    plain.edit(|parts| {
+        if let Antialias::Supersample { samples, .. } = &mut parts.settings.antialias {
+            *samples = few;
+        }
+    })?;
     let picture = renderer.prepare_scene(plain.into())?;
     let began = Instant::now();
     // rays, evaluations, seconds
@@ -71,7 +77,7 @@ pub(crate) fn cost(scene: &Scene) -> Result<Cost, RenderError> {
         let deadline = Deadline(began + MOST);
         let (part, _) = picture.render_part([width, height], &Plane::ALL, &deadline);
         if part.is_whole || is_least {
-            let rays = f64::from(width) * f64::from(height);
+            let rays = f64::from(width) * f64::from(height) * f64::from(few);
             found = (rays, part.spent as f64, part.statistics.seconds);
         }
         is_least &= !part.is_whole;
