@@ -59,6 +59,9 @@ pub trait Prepared: Send {
     /// Adds these samples of every pixel, of those that [`Accumulator::wanted`] counts, as `camera` sees the scene. The size of the
     /// picture, its antialiasing and its planes are those of the accumulator.
     ///
+    /// Samples from 4 n to 4 n + 3 may share what only changes slowly (occlusion), where they are taken in one call: pictures that are
+    /// made in other turns differ by as much as that changes within a pixel.
+    ///
     /// # Errors
     /// See [`RenderError`]; some pixels may then have samples that others lack, and the accumulator is only good to be cleared.
     fn sample(

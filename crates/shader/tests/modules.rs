@@ -13,7 +13,7 @@ use zeroset_number::Grid;
 use zeroset_scene::material::{Image, Pattern};
 use zeroset_scene::scene::{Scene, SceneParts};
 use zeroset_scene::settings::{
-    Antialias, Filter, Integrator, March, Normals, Occlusion, Shading, Shadow,
+    Antialias, Filter, Integrator, March, Normals, Occlusion, Shading, Shadow, Tone,
 };
 use zeroset_shader::entry::{Binding, ENTRIES};
 use zeroset_shader::export::ExportError;
@@ -382,6 +382,20 @@ fn large_scenes_are_exported_or_refused() {
 }
 
 /// A file has no textures: the pixels of its images stand in it, as far as a compiler takes so many.
+#[test]
+fn every_way_of_light_is_exported() {
+    let text = "show(sphere(1), material(color = \"white\", transmission = 1))\nshow(plane().move(y = -1))\nfog(glow = 1)\nsky(sun = 3)";
+    for (integrator, tone) in Integrator::ALL.iter().zip(Tone::ALL) {
+        let mut scene = scene(text);
+        scene
+            .edit(|s| (s.settings.integrator, s.settings.tone) = (*integrator, tone))
+            .expect("a scene");
+        let text = export::wgsl(&scene).unwrap_or_else(|e| panic!("{integrator:?}: {e}"));
+        validate(&text, &format!("{integrator:?}"));
+        export::glsl(&scene).unwrap_or_else(|e| panic!("{integrator:?}: {e}"));
+    }
+}
+
 #[test]
 fn images_are_exported_or_refused() {
     let scene = patterns([80, 50]);

@@ -4,15 +4,13 @@ use crate::ao;
 use crate::job::Job;
 use crate::march::ORDINAL;
 use crate::order::{self, Sorting};
-use crate::paths::{PathRay, PathState};
-use crate::ray::WideRay;
 use crate::shadow::shadows;
 use crate::simd::{INSIDE, load, load_words, load3, splat, store, store3};
 use crate::surface::materials;
 use crate::tile::{Area, Hits, Scratch, Solid};
 use fearless_simd::{Simd, prelude::*};
 use zeroset_number::lanes::LaneMask;
-use zeroset_number::{Lanes, Ops, Real, Vec3, v3};
+use zeroset_number::{Lanes, Ops, Real, Vec3};
 use zeroset_scene::film::Plane;
 use zeroset_scene::light::Light;
 use zeroset_scene::settings::{Occlusion, Shading};
@@ -21,9 +19,7 @@ use zeroset_shade::light::{arrival, towards};
 use zeroset_shade::parameters;
 use zeroset_shade::sampling::{hit_seed, scramble};
 use zeroset_shade::sky::SkyColours;
-use zeroset_shade::surface::{
-    FAINTEST, Lighting, colour, followed_share, mirrored, refraction, transmittance,
-};
+use zeroset_shade::surface::{Lighting, colour, transmittance};
 
 /// A sample of the pixels of a tile.
 #[derive(Clone, Copy)]
@@ -52,149 +48,38 @@ pub(crate) struct Direct;
 
 impl Integrator for Direct {
     fn integrate<S: Simd>(&self, s: S, sample: &TileSample<'_>, q: &mut Scratch) {
-        occlude(s, sample, q);
-        materials(s, sample.job, sample.solid, &mut q.hits);
+        identify(s, sample, q);
         q.hits.material.make_opaque(q.hits.count);
-        q.hits.followed[..q.hits.count].fill(0.0);
         light(s, sample, q);
-        shade(
+    }
+}
+
+/// Finds what the hits are made of and how much of the sky they see. No ray goes on yet.
+pub(crate) fn identify<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
+    occlude(s, sample, q);
+    materials(s, sample.job, sample.solid, &mut q.hits);
+    q.hits.followed[..q.hits.count].fill(0.0);
+}
+
+/// Puts the colours of the hits together, of what the lights and the sky send them.
+pub(crate) fn light<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
+    let scene = &sample.job.picture.scene;
+    darken(q);
+    for light in scene.lights() {
+        if sample.solid.stop.is_set() {
+            break;
+        }
+        shadows(s, sample.solid, light, q);
+        add_light(
             s,
             sample,
-            &SkyColours::of(sample.job.picture.scene.sky()),
+            light,
             q,
+            #[inline(always)]
+            |_, point| towards(&light.source, point),
         );
     }
-}
-
-/// As [`Direct`], and on: smooth surfaces reflect what rays find there, clear bodies let rays through (Whitted 1980; Keinert et al. 2014,
-/// section 4).
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Whitted {
-    pub(crate) reflections: u32,
-    pub(crate) refractions: u32,
-}
-
-impl Integrator for Whitted {
-    fn integrate<S: Simd>(&self, s: S, sample: &TileSample<'_>, q: &mut Scratch) {
-        occlude(s, sample, q);
-        materials(s, sample.job, sample.solid, &mut q.hits);
-        if sample.job.picture.scene.settings().shading != Shading::Physical {
-            q.hits.material.make_opaque(q.hits.count);
-            q.hits.followed[..q.hits.count].fill(0.0);
-            light(s, sample, q);
-            shade(
-                s,
-                sample,
-                &SkyColours::of(sample.job.picture.scene.sky()),
-                q,
-            );
-            return;
-        }
-        q.hits.followed[..q.hits.count].fill(0.0);
-        if sample.job.picture.goes_on {
-            for i in 0..q.hits.count {
-                q.hits.followed[i] = self.go_on(sample, q, i);
-            }
-        }
-        light(s, sample, q);
-        shade(
-            s,
-            sample,
-            &SkyColours::of(sample.job.picture.scene.sky()),
-            q,
-        );
-        if sample.job.picture.goes_on {
-            for i in 0..q.hits.count {
-                lose(sample, q, i);
-            }
-        }
-    }
-}
-
-impl Whitted {
-    /// Sends rays on from hit number `i`. Gives the share of its reflection that they follow.
-    fn go_on(&self, sample: &TileSample<'_>, q: &mut Scratch, i: usize) -> f32 {
-        let (hits, number) = (&q.hits, (q.hits.word[i] & ORDINAL) as usize);
-        let inside = hits.word[i] & INSIDE != 0;
-        if !hits.material.goes_on(i) {
-            return 0.0;
-        }
-        let what = hits.material.get(i);
-        let clear = what.transmission * (1.0 - what.metallic);
-        let smooth = followed_share(what.roughness);
-        if clear <= 0.0 && (inside || smooth <= 0.0) {
-            return 0.0;
-        }
-        let state = q.paths.state(number);
-        let ray = hits.rays.get(&hits.common, i);
-        let (d, n) = (ray.direction, hits.normal(i));
-        let cosine = (-n.dot(d)).clamp(0.0, 1.0);
-        let body = sample.job.material(state.medium.unwrap_or(hits.first[i]));
-        let weight = state.weight.times(left(sample, q, i));
-        let next = WideRay {
-            travelled: ray.way(hits.t[i]),
-            ..ray
-        };
-        let mut onward = |direction, side: f32, state: PathState| {
-            let bright = state.weight.max_component() >= FAINTEST;
-            if bright {
-                let origin = hits.point(i) + n * (hits.offset[i] * side);
-                let ray = WideRay {
-                    origin,
-                    direction,
-                    ..next
-                };
-                q.paths.push(PathRay { ray, state });
-            }
-            bright
-        };
-        let mirror = d + n * (2.0 * cosine);
-        // what clear bodies reflect, and what goes on behind their surface
-        let mut reflected = mirrored(&what, cosine).all * (smooth * (1.0 - clear));
-        if inside {
-            reflected = reflected * 0.0;
-        }
-        let (mut reflections, mut refractions) = (state.reflections, state.refractions);
-        if inside {
-            refractions += 1;
-        } else {
-            reflections += 1;
-        }
-        if clear > 0.0 {
-            let ior = if inside { 1.0 / body.ior } else { body.ior };
-            let border = refraction(d, n, ior);
-            reflected = reflected + v3(1.0, 1.0, 1.0) * (clear * border.reflected);
-            let through = clear * (1.0 - border.reflected);
-            let colour = if inside {
-                v3(1.0, 1.0, 1.0)
-            } else {
-                what.albedo
-            };
-            if state.refractions < self.refractions {
-                let state = PathState {
-                    weight: weight.times(colour) * through,
-                    refractions: state.refractions + 1,
-                    medium: (!inside).then_some(hits.first[i]),
-                    ..state
-                };
-                onward(border.direction, -1.0, state);
-            }
-        }
-        let allowed = reflections <= self.reflections && refractions <= self.refractions;
-        let state = PathState {
-            weight: weight.times(reflected),
-            reflections,
-            refractions,
-            medium: inside.then_some(state.medium.unwrap_or(hits.first[i])),
-            ..state
-        };
-        // of clear bodies nothing is left to the blurred sky
-        if allowed && onward(mirror, 1.0, state) {
-            smooth + (1.0 - smooth) * clear
-        } else {
-            clear
-        }
-    }
+    shade(s, sample, &SkyColours::of(scene.sky()), q);
 }
 
 /// What the way leaves of light from hit number `i` back to where its ray began: through a clear body, or through fog.
@@ -308,25 +193,6 @@ fn occlude<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
     }
     if shares {
         q.shared.keep(sample.index, &q.hits);
-    }
-}
-
-/// Sums up what arrives from the lights.
-fn light<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
-    darken(q);
-    for light in sample.job.picture.scene.lights() {
-        if sample.solid.stop.is_set() {
-            break;
-        }
-        shadows(s, sample.solid, light, q);
-        add_light(
-            s,
-            sample,
-            light,
-            q,
-            #[inline(always)]
-            |_, point| towards(&light.source, point),
-        );
     }
 }
 

@@ -1,7 +1,7 @@
 //! What is done for a tile: the stages, sample by sample.
 
 use crate::closest::{Plan, closest};
-use crate::integrator::{Direct, Integrator, TileSample, Whitted};
+use crate::integrator::{Direct, Integrator, TileSample};
 use crate::march::ORDINAL;
 use crate::normal::{normals, place};
 use crate::order::{self, PLACE};
@@ -12,6 +12,7 @@ use crate::simd::{splat, store, store3};
 use crate::stop::Stop;
 use crate::surface::marks;
 use crate::tile::{Area, HEIGHT, Scratch, Solid, WIDTH};
+use crate::whitted::Whitted;
 use crate::{cone, primary, resolve};
 use fearless_simd::{Simd, prelude::*};
 use std::ops::Range;

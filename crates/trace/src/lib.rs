@@ -53,6 +53,7 @@ mod simd;
 mod stop;
 mod surface;
 mod tile;
+mod whitted;
 
 pub use query::{Hit, QueryError, Ray};
 pub use renderer::{CpuRenderer, Part, PreparedScene, sums};

@@ -7,6 +7,7 @@ mod marchers;
 mod methods;
 mod mutants;
 mod openness;
+mod paths;
 mod queries;
 mod robust;
 mod scenes;
