@@ -105,12 +105,12 @@ fn random(sample: &TileSample<'_>, q: &Scratch, i: usize, decision: u32) -> [f32
 }
 
 /// Towards places that were chosen before.
-struct Chosen<'a> {
+struct AimedLight<'a> {
     source: &'a Source,
     towards: &'a [Vec<f32>; 3],
 }
 
-impl Chosen<'_> {
+impl AimedLight<'_> {
     #[inline(always)]
     fn at<S: Simd>(&self, at: usize, origin: Vec3<Lanes<S>>) -> (Vec3<Lanes<S>>, Lanes<S>) {
         let s = origin.x.0.token();
@@ -120,7 +120,7 @@ impl Chosen<'_> {
     }
 }
 
-impl<S: Simd> Aim<S> for Chosen<'_> {
+impl<S: Simd> Aim<S> for AimedLight<'_> {
     #[inline(always)]
     fn common(&self) -> Option<[f32; 3]> {
         None
@@ -152,7 +152,7 @@ fn look<S: Simd>(s: S, sample: &TileSample<'_>, light: &Light, number: u32, q: &
             column[i] = x;
         }
     }
-    let aim = Chosen {
+    let aim = AimedLight {
         source: &light.source,
         towards: &directions,
     };

@@ -1,6 +1,6 @@
 //! The part of a picture that one thread works on at a time, and all the memory that this takes.
 
-use crate::ao::Shared;
+use crate::ao::SharedOcclusion;
 use crate::march::ITERATIONS;
 use crate::order::Sorting;
 use crate::path::BounceColumns;
@@ -275,7 +275,7 @@ pub(crate) struct Scratch {
     /// Rays that go on from hits.
     pub(crate) paths: Paths,
     /// Occlusion that several samples share.
-    pub(crate) shared: Shared,
+    pub(crate) shared: SharedOcclusion,
     /// How many hits there are of each kind of occlusion.
     pub(crate) ends: Vec<usize>,
     /// Evaluations of the rays that hit nothing, by pixel.
@@ -369,7 +369,7 @@ impl Scratch {
                 colour: sheet3(),
             },
             paths: Paths::new(),
-            shared: Shared::new(),
+            shared: SharedOcclusion::new(),
             ends: Vec::new(),
             steps: Sheet::boxed(),
             exhausted: Vec::with_capacity(WIDTH * HEIGHT),

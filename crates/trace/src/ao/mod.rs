@@ -5,7 +5,7 @@ mod hemisphere;
 mod samples;
 mod shared;
 
-pub(crate) use shared::Shared;
+pub(crate) use shared::SharedOcclusion;
 
 use crate::shadow::Hard;
 use crate::simd::{load, load_words, sided};

@@ -25,7 +25,7 @@ struct Found {
 }
 
 /// The occlusion of the samples of a tile's pixels.
-pub(crate) struct Shared {
+pub(crate) struct SharedOcclusion {
     /// Which samples share it, by the number of their group.
     group: Option<u32>,
     /// By number of the pixel.
@@ -34,9 +34,9 @@ pub(crate) struct Shared {
     given: Vec<bool>,
 }
 
-impl Shared {
-    pub(crate) fn new() -> Shared {
-        Shared {
+impl SharedOcclusion {
+    pub(crate) fn new() -> SharedOcclusion {
+        SharedOcclusion {
             group: None,
             found: vec![None; TILE_RAYS],
             given: vec![false; TILE_RAYS],
