@@ -217,7 +217,7 @@ choice! {
 
 /// How often a ray goes on.
 const BOUNCES: Param =
-    Param::new("Bounces", Unit::Count, Allowed::between(0.0, 64.0)).usual(0.0, 16.0);
+    Param::new("Bounces", Unit::Count, Allowed::between(0.0, 32.0)).usual(0.0, 16.0);
 
 choice! {
     /// Which ways light takes to the eye.
