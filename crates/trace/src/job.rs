@@ -8,7 +8,7 @@ use crate::order::{self, PLACE};
 use crate::path::PathTracer;
 use crate::paths::PathRay;
 use crate::renderer::{Done, PreparedScene};
-use crate::simd::{splat, store, store3};
+use crate::simd::{load, splat, store, store3};
 use crate::stop::Stop;
 use crate::surface::marks;
 use crate::tile::{Area, HEIGHT, Scratch, Solid, WIDTH};
@@ -337,6 +337,8 @@ impl<'a> Job<'a> {
     fn background<S: Simd>(&self, s: S, area: &Area, q: &mut Scratch) {
         let sky = SkyColours::of(self.picture.scene.sky());
         let air = &self.picture.air;
+        // but for the edge of the sun
+        let has_edge = air.cosine <= 1.0 && self.is_filtered();
         s.vectorize(
             #[inline(always)]
             || {
@@ -346,9 +348,16 @@ impl<'a> Job<'a> {
                     |k| k as f32,
                 ));
                 for y in 0..area.height {
-                    let v = splat(s, (area.y + y) as f32 + 0.5);
+                    let top = (area.y + y) as f32;
                     for x in (0..area.width).step_by(S::f32s::LEN) {
-                        let ray = primary::ray(&self.view, ramp + ((area.x + x) as f32 + 0.5), v);
+                        let (at, left) = (y * WIDTH + x, (area.x + x) as f32);
+                        let [u, v] = if has_edge {
+                            let [u, v] = &q.planes.jitter;
+                            [load(s, u, at), load(s, v, at)]
+                        } else {
+                            [splat(s, 0.5), splat(s, 0.5)]
+                        };
+                        let ray = primary::ray(&self.view, ramp + left + u, v + top);
                         let sky = behind(&sky, air, ray.origin.y, ray.direction, true);
                         store3(sky, &mut q.planes.colour, y * WIDTH + x);
                         store(splat(s, 0.0), &mut q.planes.coverage, y * WIDTH + x);
