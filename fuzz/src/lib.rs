@@ -11,7 +11,7 @@ use zeroset_language::load::{Language, Options, load_text};
 use zeroset_scene::film::Plane;
 use zeroset_scene::render::{Observer, RenderError, Renderer};
 use zeroset_scene::scene::Scene;
-use zeroset_scene::settings::{Antialias, Occlusion};
+use zeroset_scene::settings::{Antialias, Integrator, Occlusion};
 use zeroset_trace::CpuRenderer;
 
 /// Loads a text, and what it wrote of it as JSON. `None` where it is refused.
@@ -93,6 +93,17 @@ pub fn render(mut scene: Scene) {
         s.settings.max_steps = s.settings.max_steps.min(64);
         if let Antialias::Supersample { samples, .. } = &mut s.settings.antialias {
             *samples = (*samples).min(2);
+        }
+        match &mut s.settings.integrator {
+            Integrator::Whitted {
+                reflections,
+                refractions,
+            } => {
+                *reflections = (*reflections).min(2);
+                *refractions = (*refractions).min(4);
+            }
+            Integrator::Path { depth, .. } => *depth = (*depth).min(4),
+            Integrator::Direct => {}
         }
         few(&mut s.settings.occlusion);
         for object in &mut s.objects {
