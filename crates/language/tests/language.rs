@@ -1,8 +1,10 @@
 //! The language: what scene files may say and what comes out.
 
+use glam::Vec3;
 use zeroset_field::field::{Field, Node};
 use zeroset_language::json::{expand, to_text};
 use zeroset_language::load::{Control, Failed, Language, Loaded, Options, Setting, load_text};
+use zeroset_scene::material::Pattern;
 use zeroset_scene::methods::Choice;
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Filter, March, Normals, Occlusion, Shading, Shadow};
@@ -476,4 +478,31 @@ fn every_method_can_be_written() {
             Antialias::None => panic!("no filter"),
         },
     );
+}
+
+/// Glass without a colour of its own is clear; roughness and shininess follow from each other.
+#[test]
+fn materials_complete_what_is_left_out() {
+    let one = |words: &str| {
+        let text = format!("show(sphere(), material({words}))");
+        scene(&text).scene.materials()[0].clone()
+    };
+    let colour = |words: &str| match one(words).pattern {
+        Pattern::Solid { colour } => colour,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(colour("transmission = 1"), Vec3::ONE);
+    assert_ne!(colour("transmission = 0"), Vec3::ONE);
+    assert!(colour("transmission = 1, color = \"red\"").y < 0.01);
+    let half = one("tint = rgb(0.5, 1, 1), tint_depth = 2");
+    // what is left after the way that was stated is the colour that was stated
+    let left = (-half.attenuation * 2.0).exp();
+    assert!((left.x - 0.214).abs() < 1e-3 && left.y == 1.0, "{left}");
+    assert_eq!(one("").roughness, 0.5);
+    assert_eq!(one("roughness = 0.2, shininess = 7").shininess, 7.0);
+    let (smooth, rough) = (one("shininess = 500"), one("shininess = 5"));
+    assert!(smooth.roughness < 0.3 && rough.roughness > 0.6);
+    // there and back again
+    let back = one(&format!("roughness = {}", smooth.roughness));
+    assert!((back.shininess - 500.0).abs() < 1.0, "{}", back.shininess);
 }

@@ -27,7 +27,11 @@ pub(crate) const ALL: &[Native] = &[
         "material",
         "What a surface looks like.",
         [
-            slot("color", "\"#cbc8c4\"", "A colour or a pattern."),
+            slot(
+                "color",
+                "\"#cbc8c4\"",
+                "A colour or a pattern; white where it transmits."
+            ),
             slot("metallic", "0", "0 plastic or stone, 1 metal."),
             slot(
                 "roughness",
@@ -288,7 +292,10 @@ impl Call<'_, '_> {
 
 fn material(c: &mut Call<'_, '_>) -> Run<Value> {
     let default = Material::default();
+    let transmission = c.number_or("transmission", f64::from(default.transmission), 0.0, 1.0)?;
     let pattern = match c.get("color") {
+        // what lets light through colours it by its tint
+        None if transmission > 0.0 => Pattern::Solid { colour: Vec3::ONE },
         None => default.pattern,
         Some(given) => match given.value {
             Value::Thing(i) => match c.machine.store.thing(i) {
@@ -314,8 +321,7 @@ fn material(c: &mut Call<'_, '_>) -> Run<Value> {
         shininess: (shininess.or(roughness.map(shininess_of))).unwrap_or(default.shininess),
         metallic: c.number_or("metallic", f64::from(default.metallic), 0.0, 1.0)? as f32,
         roughness: (roughness.or(shininess.map(roughness_of))).unwrap_or(default.roughness),
-        transmission: c.number_or("transmission", f64::from(default.transmission), 0.0, 1.0)?
-            as f32,
+        transmission: transmission as f32,
         ior: c.number_or("ior", f64::from(default.ior), 1.0, 4.0)? as f32,
         attenuation: attenuation(c.colour_or("tint", "white")?, depth),
         emission: c.colour_or("emission", "black")? * strength,
