@@ -7,7 +7,9 @@ use zeroset_language::load::{Control, Failed, Language, Loaded, Options, Setting
 use zeroset_scene::material::Pattern;
 use zeroset_scene::methods::Choice;
 use zeroset_scene::scene::Scene;
-use zeroset_scene::settings::{Antialias, Filter, March, Normals, Occlusion, Shading, Shadow};
+use zeroset_scene::settings::{
+    Antialias, Filter, Integrator, March, Normals, Occlusion, Shading, Shadow, Tone,
+};
 
 fn try_load(text: &str, options: &Options) -> Result<Loaded, Failed> {
     load_text("scene.star", text, Language::Starlark, None, options)
@@ -466,6 +468,14 @@ fn every_method_can_be_written() {
     each::<Shading>(
         |m| format!("show(sphere())\nrender(shading = {m})"),
         |s| s.settings().shading,
+    );
+    each::<Integrator>(
+        |m| format!("show(sphere())\nrender(integrator = {m})"),
+        |s| s.settings().integrator,
+    );
+    each::<Tone>(
+        |m| format!("show(sphere())\nrender(tone = {m})"),
+        |s| s.settings().tone,
     );
     each::<Shadow>(
         |m| format!("show(sphere())\nsun(shadow = {m})"),
