@@ -63,32 +63,39 @@ impl Guide {
 
 /// A film without the noise of its colours. All other planes stay as they are.
 ///
-/// A film that lacks one of the [`GUIDES`] is given back as it is.
-pub fn denoise(film: &Film) -> Film {
-    let mut out = film.clone();
+/// A film that lacks one of the [`GUIDES`] is given back as it is. `stop` is asked before every pass whether to go on; where it says to
+/// stop, there is no film.
+pub fn denoise(mut film: Film, stop: &dyn Fn() -> bool) -> Option<Film> {
     if !GUIDES.iter().all(|plane| film.has(*plane)) {
-        return out;
+        return Some(film);
     }
     let size = [film.width() as usize, film.height() as usize];
-    let guides = guides(film, size);
+    let guides = guides(&film, size);
     let colours = film.plane(Plane::Colour).as_chunks::<3>().0;
     let mut light: Vec<Vec3> = (colours.iter().zip(&guides))
         .map(|(c, guide)| Vec3::from(*c) / guide.albedo)
         .collect();
+    if stop() {
+        return None;
+    }
     light = without_fireflies(&light, size);
     let mut variance = variances(&light, &guides, size);
     for pass in 0..PASSES {
-        (light, variance) = smoothed(&light, &variance, &guides, size, 1 << pass);
+        (light, variance) = smoothed(&light, &variance, &guides, size, 1 << pass, stop)?;
     }
-    let pixels = out.plane_mut(Plane::Colour).as_chunks_mut::<3>().0;
+    let pixels = film.plane_mut(Plane::Colour).as_chunks_mut::<3>().0;
     for ((pixel, light), guide) in pixels.iter_mut().zip(&light).zip(&guides) {
         *pixel = (*light * guide.albedo).to_array();
     }
-    out
+    Some(film)
 }
 
+/// Bytes a pixel that it takes beside the film: light and variances twice, and what guides.
+pub const BYTES: u64 =
+    2 * (size_of::<Vec3>() + size_of::<f32>()) as u64 + size_of::<Guide>() as u64;
+
 fn luminance(c: Vec3) -> f32 {
-    c.dot(Vec3::new(0.2126, 0.7152, 0.0722))
+    zeroset_shade::light::luminance(c.to_array())
 }
 
 fn guides(film: &Film, [width, height]: [usize; 2]) -> Vec<Guide> {
@@ -183,16 +190,20 @@ fn variances(light: &[Vec3], guides: &[Guide], size: [usize; 2]) -> Vec<f32> {
         .collect()
 }
 
-/// One pass: light, and what is left of its variance.
+/// One pass: light, and what is left of its variance. `stop` is asked before every row.
 fn smoothed(
     light: &[Vec3],
     variance: &[f32],
     guides: &[Guide],
     size: [usize; 2],
     step: isize,
-) -> (Vec<Vec3>, Vec<f32>) {
+    stop: &dyn Fn() -> bool,
+) -> Option<(Vec<Vec3>, Vec<f32>)> {
     (0..light.len())
         .map(|i| {
+            if i.is_multiple_of(size[0]) && stop() {
+                return None;
+            }
             // of the neighbours too: one pixel may know its variance badly
             let (mut near, mut weights) = (0.0, 0.0);
             for (j, [dx, dy]) in around(i, size, 1, 1) {
@@ -217,14 +228,15 @@ fn smoothed(
                 all += w;
             }
             // a pixel is always like itself
-            (sum / all, spread / (all * all))
+            Some((sum / all, spread / (all * all)))
         })
-        .unzip()
+        .collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::cell::Cell;
 
     /// A number from 0 to 1 for a place.
     fn random(seed: u32) -> f32 {
@@ -275,6 +287,10 @@ mod tests {
         (film, right)
     }
 
+    fn whole(film: Film) -> Film {
+        denoise(film, &|| false).expect("nobody stops it")
+    }
+
     fn error(film: &Film, right: &[Vec3]) -> f32 {
         let pixels = film.plane(Plane::Colour).as_chunks::<3>().0;
         let square: f32 = (pixels.iter().zip(right))
@@ -286,14 +302,14 @@ mod tests {
     #[test]
     fn noise_goes_and_edges_stay() {
         let (noisy, right) = film(0.5);
-        let (before, after) = (error(&noisy, &right), error(&denoise(&noisy), &right));
+        let (before, after) = (error(&noisy, &right), error(&whole(noisy.clone()), &right));
         assert!(after < 0.2 * before, "{before} before, {after} after");
     }
 
     #[test]
     fn what_has_no_noise_stays() {
         let (clean, right) = film(0.0);
-        let after = error(&denoise(&clean), &right);
+        let after = error(&whole(clean), &right);
         assert!(after < 2e-3, "{after}");
     }
 
@@ -303,7 +319,7 @@ mod tests {
         for i in [20 * SIZE[0] + 10, 30 * SIZE[0] + 35] {
             film.plane_mut(Plane::Colour)[3 * i..3 * i + 3].fill(1000.0);
         }
-        let after = error(&denoise(&film), &right);
+        let after = error(&whole(film), &right);
         assert!(after < 0.05, "{after}");
     }
 
@@ -313,9 +329,19 @@ mod tests {
         let mut bare = Film::with(film.width(), film.height(), &[Plane::Colour]);
         bare.plane_mut(Plane::Colour)
             .copy_from_slice(film.plane(Plane::Colour));
-        assert_eq!(
-            denoise(&bare).plane(Plane::Colour),
-            film.plane(Plane::Colour)
-        );
+        assert_eq!(whole(bare).plane(Plane::Colour), film.plane(Plane::Colour));
+    }
+
+    #[test]
+    fn it_ends_when_it_is_asked_to() {
+        for rows in [0, 1, 60, 100] {
+            let asked = Cell::new(0);
+            let stop = || {
+                asked.set(asked.get() + 1);
+                asked.get() > rows
+            };
+            assert!(denoise(film(0.5).0, &stop).is_none());
+            assert_eq!(asked.get(), rows + 1);
+        }
     }
 }

@@ -1,8 +1,9 @@
 //! Lights and the sky.
 
+use crate::camera::degrees_of;
 use crate::settings::Shadow;
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Where light comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -59,10 +60,20 @@ pub struct Sky {
     /// Share of the sky's light that reaches an unoccluded surface from everywhere.
     pub ambient: f32,
     /// Angle under which the disc of the sun is seen, radians; 0 for none. (The real one: 0.0093.) The sun is the first directional light.
+    /// In files it is in degrees.
+    #[serde(serialize_with = "write_degrees", deserialize_with = "read_degrees")]
     pub sun: f32,
     /// Fog, where there is any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fog: Option<Fog>,
+}
+
+fn write_degrees<S: Serializer>(radians: &f32, to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_f64(degrees_of(*radians))
+}
+
+fn read_degrees<'de, D: Deserializer<'de>>(from: D) -> Result<f32, D::Error> {
+    f64::deserialize(from).map(|degrees| degrees.to_radians() as f32)
 }
 
 /// Fog: it takes light, and sends its own.

@@ -286,7 +286,7 @@ pub fn sky(sky: &Sky) -> Checked {
     colour("horizon", sky.horizon)?;
     colour("bottom", sky.bottom)?;
     number("ambient", sky.ambient, 0.0, 10.0)?;
-    number("sun", sky.sun, 0.0, std::f32::consts::PI)?;
+    number("sun", crate::camera::degrees_of(sky.sun) as f32, 0.0, 180.0)?;
     sky.fog
         .as_ref()
         .map_or(Ok(()), |f| fog(f).map_err(|e| e.at("fog")))

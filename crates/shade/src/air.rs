@@ -1,5 +1,6 @@
 //! What is between things, and before the sky: fog, and the sun behind it.
 
+use crate::light::disc_power;
 use crate::sky::{self, SkyColours};
 use crate::{each, parameters};
 use zeroset_number::{Real, Vec3};
@@ -69,6 +70,8 @@ impl Air<f32> {
 
 /// Exponents are no larger: their powers stay finite.
 const STEEPEST: f32 = 60.0;
+/// Densities are no larger: nothing is seen through a thousandth of that.
+const LARGEST: f32 = 1e20;
 
 /// The share of light that fog takes on the way `t` from the height `y`, which goes up by `rise` over a scene unit.
 #[inline(always)]
@@ -83,7 +86,9 @@ pub fn share<R: Real>(density: R::Scalar, falloff: R::Scalar, y: R, rise: R, t: 
         (k * -0.5) + 1.0,
         (-(safe.min(STEEPEST))).exp().one_minus() / safe,
     );
-    (-(here * mean * t)).exp().one_minus()
+    // not infinite: a way without a length would make no number of it
+    let taken = (here.min(LARGEST) * mean).min(LARGEST) * t;
+    (-taken).exp().one_minus()
 }
 
 /// The light that fog sends along a ray of direction `d`, where nothing is seen through it: its own colour, and what it scatters of the
@@ -117,8 +122,7 @@ pub fn disc<R: Real>(
     d: Vec3<R>,
 ) -> Vec3<R> {
     let zero = d.x.lit(0.0);
-    // pi over the solid angle
-    let power = ((zero.like(cosine).one_minus() * 2.0).max(1e-9).recip()).min(BRIGHTEST);
+    let power = disc_power(zero.like(cosine)).min(BRIGHTEST);
     let along = d.dot(d.like(sun));
     let shown = R::choose(along.above(cosine), power, zero);
     let radiance = radiance.array();
@@ -185,6 +189,25 @@ mod tests {
                     (f64::from(found) - right).abs() < 2e-4,
                     "{density} {falloff} {y} {rise} {t}: {found} instead of {right}"
                 );
+            }
+        }
+    }
+
+    #[test]
+    fn no_fog_is_so_thick_that_it_has_no_number() {
+        for density in [0.0f32, 1e-30, 1.0, 1e32, f32::MAX] {
+            for falloff in [0.0f32, 1e-9, 1.0, 1e9] {
+                for y in [-1e9f32, -1.0, 0.0, 1e9] {
+                    for rise in [-1.0f32, -1e-9, 0.0, 1e-9, 1.0] {
+                        for t in [0.0f32, 1e-9, 1.0, 1e9, ENDLESS] {
+                            let found = share(density, falloff, y, rise, t);
+                            assert!(
+                                (0.0..=1.0).contains(&found),
+                                "{density} {falloff} {y} {rise} {t}: {found}"
+                            );
+                        }
+                    }
+                }
             }
         }
     }

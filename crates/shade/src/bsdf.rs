@@ -4,10 +4,18 @@
 //! The surface is that of [`crate::surface`]: small mirrors over a body that scatters by the cosine law, or over a clear one.
 
 use crate::light::luminance_of;
-use crate::microfacet::{alpha, fresnel, schlick};
+use crate::microfacet::{alpha, schlick};
 use crate::sampling::{basis, cosine_direction};
-use crate::surface::{LocalMaterial, mirrored};
+use crate::surface::{LocalMaterial, mirrored, refraction};
 use zeroset_number::{Real, Vec3, v3};
+
+/// Decisions that a way takes at each surface: what scatters it and whether it ends; where to; and where each of so many lights is looked
+/// for.
+pub const DECISIONS: u32 = 2 + zeroset_scene::valid::LIGHTS as u32;
+/// Ways end at random from this number of surfaces on...
+pub const SURE: u32 = 3;
+/// ...and go on with a chance of at most this.
+pub const LIKELIEST: f32 = 0.95;
 
 /// Where a ray goes on.
 #[derive(Clone, Copy, Debug)]
@@ -95,21 +103,17 @@ pub fn scatter<R: Real>(
     let mirror_weight = f.times(mirrors.again) * (share * opaque / p_mirror.max(1e-12));
 
     // the border of a clear body
-    let back = fresnel(aligned, ior);
+    let border = refraction(d, h, ior);
     let rest = ((choice - p_body - p_mirror) / p_clear).clamp(0.0, 1.0);
-    let passes = rest.above(back);
-    let over = ior.recip();
-    let behind = ((aligned.sq().one_minus() * over.sq()).one_minus().max(0.0)).sqrt();
-    let refracted = d * over + h * (over * aligned - behind);
-    let refracted = refracted / refracted.length().max(1e-12);
-    let down = -n.dot(refracted);
+    let passes = rest.above(border.reflected);
+    let down = -n.dot(border.direction);
     let shone = seen_share(cosine, down.max(0.0), alpha);
     let shone = R::choose(down.above(0.0), shone, zero);
     let through_weight = tint * (shone * clear / p_clear);
     let back_weight = Vec3::splat(share * clear / p_clear);
     let one = cosine.lit(1.0);
     let clear_weight = Vec3::select(passes, through_weight, back_weight);
-    let clear_way = Vec3::select(passes, refracted, reflected);
+    let clear_way = Vec3::select(passes, border.direction, reflected);
 
     let mirror = Scattered {
         direction: Vec3::select(is_clear, clear_way, reflected),

@@ -2,14 +2,14 @@
 
 use crate::microfacet::{LIGHT_ALPHA, alpha, distribution, schlick, visibility};
 use crate::{each, parameters};
-use zeroset_number::{Real, Vec3};
+use zeroset_number::{Real, Vec3, v3};
 use zeroset_scene::light::{Light, Source};
 use zeroset_scene::settings::{Shading, Shadow};
 
 /// Luminance of a linear colour (Rec. 709).
 #[inline(always)]
 pub fn luminance(c: [f32; 3]) -> f32 {
-    0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]
+    luminance_of(v3(c[0], c[1], c[2]))
 }
 
 /// As [`luminance`], of numbers of any type.
@@ -50,12 +50,23 @@ pub fn towards<R: Real<Scalar = f32>>(source: &Source, p: Vec3<R>) -> (Vec3<R>, 
     }
 }
 
-/// The cosine of the angle under which half a light is seen: as wide as the penumbra of its shadow is. 1 where the shadow is hard.
+/// The cosine of the angle under which half a light is seen whose shadow is so sharp: as wide as its penumbra.
+#[inline(always)]
+pub fn width_of<R: Real>(sharpness: R) -> R {
+    (sharpness.sq().recip() + 1.0).sqrt().recip()
+}
+
+/// How many times as bright a disc is as a white surface that faces it: pi over its solid angle. `cosine` is that of the angle under which
+/// half of it is seen.
+#[inline(always)]
+pub fn disc_power<R: Real>(cosine: R) -> R {
+    (cosine.one_minus() * 2.0).max(1e-9).recip()
+}
+
+/// See [`width_of`]; 1 where the shadow is hard.
 pub fn width(light: &Light) -> f32 {
     match light.shadow {
-        Shadow::Soft { sharpness } | Shadow::SoftClosest { sharpness } => {
-            (1.0 + sharpness.powi(-2)).sqrt().recip()
-        }
+        Shadow::Soft { sharpness } | Shadow::SoftClosest { sharpness } => width_of(sharpness),
         Shadow::Hard | Shadow::None => 1.0,
     }
 }
@@ -70,8 +81,7 @@ pub fn discs(lights: &[Light], direction: Vec3<f32>) -> Vec3<f32> {
         };
         let cosine = width(light);
         if cosine < 1.0 && -parameters(way).dot(direction) > cosine {
-            // pi over the solid angle
-            sum = sum + parameters(light.radiance) * (0.5 / (1.0 - cosine));
+            sum = sum + parameters(light.radiance) * disc_power(cosine);
         }
     }
     sum
@@ -203,7 +213,6 @@ pub fn arrival<R: Real<Scalar = f32>>(
 mod tests {
     use super::*;
     use glam::Vec3 as G;
-    use zeroset_number::v3;
 
     #[test]
     fn lights_follow_their_laws() {

@@ -55,12 +55,6 @@ pub fn fresnel<R: Real>(cosine: R, ior: R) -> R {
     R::select(square.above(0.0), partial, c.lit(1.0)).min(1.0)
 }
 
-/// The reflectance along the normal of a clear body with this index of refraction.
-#[inline(always)]
-pub fn straight<R: Real>(ior: R) -> R {
-    ((ior - 1.0) / (ior + 1.0)).sq()
-}
-
 /// The share of light from everywhere that mirrors without loss send to an eye at this cosine in one reflection; the rest is reflected
 /// again by other mirrors.
 ///
@@ -193,7 +187,6 @@ mod tests {
         let close = |a: f32, b: f32| assert!((a - b).abs() < 1e-5, "{a} instead of {b}");
         close(fresnel(1.0, 1.5), 0.04);
         close(fresnel(1.0, 1.0 / 1.5), 0.04);
-        close(straight(1.5), 0.04);
         close(fresnel(0.0, 1.5), 1.0);
         // beyond the critical angle, whose sine is 1 / 1.5, all is reflected
         let critical = (1.0f32 - 1.0 / 2.25).sqrt();

@@ -64,15 +64,18 @@ pub fn point(index: u32, scramble: [u32; 2]) -> [f32; 2] {
     [unit(x ^ scramble[0]), unit(y ^ scramble[1])]
 }
 
+/// The factors of [`decided`]'s hash (Burley 2020).
+pub const LAINE_KARRAS: [u32; 4] = [0x6c50_b47c, 0xb82f_1e52, 0xc7af_e638, 0x8d22_f6e6];
+
 /// A hash of a number whose bit k depends on lower bits alone: reversed, it exchanges the halves of an interval, the quarters in them and
 /// so on at random, as Owen (1995) scrambles (Laine and Karras 2011, with the constants of Burley 2020).
 #[inline(always)]
 fn laine_karras(x: u32, seed: u32) -> u32 {
     let mut x = x.wrapping_add(seed);
-    x ^= x.wrapping_mul(0x6c50_b47c);
-    x ^= x.wrapping_mul(0xb82f_1e52);
-    x ^= x.wrapping_mul(0xc7af_e638);
-    x ^ x.wrapping_mul(0x8d22_f6e6)
+    for factor in LAINE_KARRAS {
+        x ^= x.wrapping_mul(factor);
+    }
+    x
 }
 
 #[inline(always)]

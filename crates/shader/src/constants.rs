@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use zeroset_field::program::{FLAT, INSIDE_MARKS};
 use zeroset_shade::{
-    air, march, occlusion, pattern, sampling, secondary, shadow, skin, surface, view,
+    air, bsdf, march, occlusion, pattern, sampling, secondary, shadow, skin, surface, view,
 };
 
 /// The value of a constant.
@@ -87,6 +87,14 @@ fn constants() -> Vec<(&'static str, Value)> {
         ("ENDLESS", Number(air::ENDLESS)),
         // rays that go on
         ("FAINTEST", Number(surface::FAINTEST)),
+        // paths
+        ("PATH_DECISIONS", Whole(bsdf::DECISIONS)),
+        ("PATH_SURE", Whole(bsdf::SURE)),
+        ("PATH_LIKELIEST", Number(bsdf::LIKELIEST)),
+        ("LAINE_KARRAS_A", Whole(sampling::LAINE_KARRAS[0])),
+        ("LAINE_KARRAS_B", Whole(sampling::LAINE_KARRAS[1])),
+        ("LAINE_KARRAS_C", Whole(sampling::LAINE_KARRAS[2])),
+        ("LAINE_KARRAS_D", Whole(sampling::LAINE_KARRAS[3])),
         // patterns
         ("LEAST_WEIGHT", Number(pattern::LEAST_WEIGHT)),
     ]

@@ -238,6 +238,8 @@ formulas! {
         let what = material(albedo, albedo, finish);
         bsdf::scatter(&what, normal, direction, ior, tint, choice.array()).weight
     };
+    fn light_width(sharpness: Number) = light::width_of(sharpness);
+    fn disc_power(cosine: Number) = light::disc_power(cosine);
     fn cone_around(axis: Vec3, cosine: Number, u: Vec2) = sampling::cone_direction(axis, cosine, u.x, u.y);
     fn transmittance(attenuation: Vec3, t: Number) = surface::transmittance(attenuation, t);
 

@@ -605,7 +605,9 @@ fn ways(settings: &Settings) -> &'static [Stage] {
             "ways_path",
             "scatter_way",
             "scatter_weight",
-            "cone_around"
+            "cone_around",
+            "light_width",
+            "disc_power"
         )],
     }
 }

@@ -19,7 +19,7 @@ use zeroset_number::lanes::LaneMask;
 use zeroset_number::{Lanes, Vec3, v3};
 use zeroset_scene::light::{Light, Source};
 use zeroset_scene::settings::{Occlusion, Shadow};
-use zeroset_shade::bsdf::scatter;
+use zeroset_shade::bsdf::{DECISIONS, LIKELIEST, SURE, scatter};
 use zeroset_shade::light::{towards, width};
 use zeroset_shade::sampling::{cone_direction, decided, hit_seed, scramble};
 use zeroset_shade::sky::SkyColours;
@@ -30,13 +30,6 @@ pub(crate) struct PathTracer {
     /// Surfaces that light meets on its way, at most.
     pub(crate) depth: u32,
 }
-
-/// Decisions at a surface: where the ray goes on, and whether; then where each light is looked for.
-const DECISIONS: u32 = 2 + 64;
-/// Ways end at random from this number of surfaces on.
-const SURE: u32 = 3;
-/// The most that the chance is to go on.
-const LIKELIEST: f32 = 0.95;
 
 /// Where rays go on from many hits, a column for each number.
 pub(crate) struct BounceColumns {

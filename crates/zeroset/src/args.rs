@@ -153,7 +153,7 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "N", default_value_t = 30.0, value_parser = crate::values::positive, requires = "frames")]
     pub fps: f64,
     /// Take the noise out of the picture that paths traced at random, guided by the colours, normals and distances of surfaces
-    #[arg(long)]
+    #[arg(long, conflicts_with = "view")]
     pub denoise: bool,
     /// Seconds that rendering a picture may take, after the scene is loaded. Then the file is written, whole, with what
     /// there is: the tiles that are finished, and a picture of fewer rays or of larger pixels in all other places. What

@@ -1,11 +1,5 @@
 // Path tracing: one way of many goes on from each surface. The twin of `trace/path.rs`.
 
-/// Decisions at a surface: where the ray goes on, and whether; then where each light is looked for.
-const DECISIONS: u32 = 66u;
-/// Ways end at random from this number of surfaces on.
-const SURE: u32 = 3u;
-/// The most that the chance is to go on.
-const LIKELIEST: f32 = 0.95;
 /// A matte body scattered the light on its way.
 const SCATTERED: u32 = 1u;
 /// The last surface was that of a clear body.
@@ -14,10 +8,10 @@ const SEES_LIGHTS: u32 = 2u;
 /// A hash of a number whose bit k depends on lower bits alone (Laine and Karras 2011, with the constants of Burley 2020).
 fn laine_karras(number: u32, seed: u32) -> u32 {
     var x = number + seed;
-    x ^= x * 0x6c50b47cu;
-    x ^= x * 0xb82f1e52u;
-    x ^= x * 0xc7afe638u;
-    return x ^ (x * 0x8d22f6e6u);
+    x ^= x * LAINE_KARRAS_A;
+    x ^= x * LAINE_KARRAS_B;
+    x ^= x * LAINE_KARRAS_C;
+    return x ^ (x * LAINE_KARRAS_D);
 }
 
 fn owen(x: u32, seed: u32) -> u32 {
@@ -27,7 +21,7 @@ fn owen(x: u32, seed: u32) -> u32 {
 /// Two random numbers for a decision at a surface.
 fn decided(path: Onward, decision: u32) -> vec2f {
     let key = scramble(path.pixel, frame.seed ^ HIT_SEEDS);
-    let number = path.bounces.x * DECISIONS + decision;
+    let number = path.bounces.x * PATH_DECISIONS + decision;
     let a = scramble(key, number);
     let c = scramble(key.yx, ~number);
     let at = sobol(owen(path.index, c.x));
@@ -50,12 +44,7 @@ fn aim(path: Onward, light: Light, number: u32, p: vec3f) -> vec4f {
         return to;
     }
     let u = decided(path, 2u + number);
-    return vec4f(cone_around(to.xyz, light_width(light), u), to.w);
-}
-
-/// The cosine of the angle under which half a light is seen.
-fn light_width(light: Light) -> f32 {
-    return 1.0 / sqrt(1.0 + 1.0 / (light.sharpness * light.sharpness));
+    return vec4f(cone_around(to.xyz, light_width(light.sharpness), u), to.w);
 }
 
 fn shadow_kind(light: Light) -> u32 {
@@ -75,9 +64,9 @@ fn sky_of(path: Onward) -> vec3f {
     if ((path.flags & SEES_LIGHTS) != 0u) {
         for (var k = 0u; k < frame.lights; k++) {
             let light = load_light(frame.light_rows + k * LIGHT_ROWS);
-            let cosine = light_width(light);
+            let cosine = light_width(light.sharpness);
             if (light.kind == 0.0 && light.sharpness > 0.0 && dot(light.place, path.ray.direction) > cosine) {
-                seen += light.radiance * (0.5 / (1.0 - cosine));
+                seen += light.radiance * disc_power(cosine);
             }
         }
     }
@@ -109,8 +98,8 @@ fn go_on(path: Onward, at: Surface, t: f32, what: LocalMaterial, material: f32, 
     if (!(strongest > 0.0 && strongest < FAR)) {
         return 1.0;
     }
-    if (path.bounces.x + 1u >= SURE) {
-        let chance = min(strongest, LIKELIEST);
+    if (path.bounces.x + 1u >= PATH_SURE) {
+        let chance = min(strongest, PATH_LIKELIEST);
         if (first.y >= chance) {
             return 1.0;
         }

@@ -352,13 +352,13 @@ const IN_SHADERS: [(&str, &str, &str, &str); 34] = [
     ),
     (
         "a sun that is seen half as bright as it shines",
-        "0.5 / (1.0 - cosine)",
-        "0.25 / (1.0 - cosine)",
+        "disc_power(cosine)",
+        "0.5 * disc_power(cosine)",
         "the sun through a pane",
     ),
     (
         "a sun that shines from its middle alone",
-        "return vec4f(cone_around(to.xyz, light_width(light), u), to.w);",
+        "return vec4f(cone_around(to.xyz, light_width(light.sharpness), u), to.w);",
         "return to;",
         "the penumbra of a wide sun",
     ),

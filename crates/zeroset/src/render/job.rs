@@ -8,7 +8,7 @@ use crate::backend::{ChosenRenderer, Used};
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
 use crate::file::{Progress, no_link, write_watched};
-use crate::interrupt::Asking;
+use crate::interrupt::{self, Asking};
 use crate::json;
 use crate::survey;
 use std::ops::Range;
@@ -22,7 +22,7 @@ use zeroset_output::format::{Metadata, exr, png};
 use zeroset_output::picture::{Developed, Rows};
 use zeroset_output::view::{PlaneView, needed};
 use zeroset_scene::film::Plane;
-use zeroset_scene::render::Frame;
+use zeroset_scene::render::{Frame, RenderError};
 use zeroset_scene::scene::Scene;
 
 /// What the flags ask for.
@@ -116,7 +116,9 @@ impl<'a> Job<'a> {
         progress.bar.finish_and_clear();
         let (mut rendered, used, lack) = rendered?;
         if self.args.denoise {
-            rendered.film = denoise::denoise(&rendered.film);
+            let stop = || interrupt::requested() || cancelled();
+            rendered.film = denoise::denoise(rendered.film, &stop)
+                .ok_or_else(|| Failure::from(RenderError::Cancelled))?;
         }
         let lack_words = lack.as_ref().map(limited::Lack::words);
         self.write(
@@ -242,20 +244,19 @@ impl<'a> Job<'a> {
     }
 }
 
-/// Bytes a pixel that taking the noise out takes: another film, light and variances twice, and what guides.
-const DENOISING: u64 = 48 + 2 * 16 + 32;
-
-/// The planes that a file needs, and the bytes a pixel that writing it takes beside the film.
+/// The planes that a file needs, and the bytes a pixel that writing it and taking the noise out take beside the film.
 fn planes(path: &Path, view: Plane, denoise: bool) -> Result<(&'static [Plane], u64), Failure> {
-    if denoise && view == Plane::Colour && matches!(Container::of(path)?, Container::Png) {
-        return Ok((&denoise::GUIDES, DENOISING));
-    }
-    Ok(match Container::of(path)? {
+    let denoising = if denoise { denoise::BYTES } else { 0 };
+    let (planes, copies) = match Container::of(path)? {
         // all numbers once more, one plane after the other, and what they are compressed to
-        Container::Exr => (&Plane::ALL, 2 * 64),
+        Container::Exr => (&Plane::ALL[..], 2 * 64),
         // colours are written row by row, of others there is a picture, and one with a legend beside it
-        Container::Png => (needed(view), if view == Plane::Colour { 0 } else { 24 }),
-    })
+        Container::Png if view != Plane::Colour => (needed(view), 24),
+        Container::Png if denoise => (&denoise::GUIDES[..], 0),
+        Container::Png => (needed(view), 0),
+    };
+    // one after the other
+    Ok((planes, copies.max(denoising)))
 }
 
 /// Whether a failure is a rendering that was asked to stop.
