@@ -155,18 +155,12 @@ impl Accumulator {
 
     /// The filter of the samples; none where there is one sample, in the middle of its pixel.
     pub fn filter(&self) -> Option<Filter> {
-        match self.antialias {
-            Antialias::None => None,
-            Antialias::Supersample { filter, .. } => Some(filter),
-        }
+        self.antialias.filter()
     }
 
     /// How many samples a pixel of the finished picture has.
     pub fn wanted(&self) -> u32 {
-        match self.antialias {
-            Antialias::None => 1,
-            Antialias::Supersample { samples, .. } => samples.max(1),
-        }
+        self.antialias.samples()
     }
 
     /// The planes that can be developed.

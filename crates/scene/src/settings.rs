@@ -195,8 +195,31 @@ choice! {
             /// How they are weighted.
             filter: Filter = Filter::Tent, Param::new("Filter", Unit::Count, Allowed::between(0.0, 0.0))
         },
+        /// Pixels that an edge goes through are parted by it, and each part is seen once.
+        Coverage("coverage", "Coverage", "Hart 1996; Tomczak 2012, 5") {
+            /// Edges that a pixel may be parted by.
+            layers: u32 = 4, Param::new("Layers", Unit::Count, Allowed::between(1.0, 8.0))
+        },
         /// One ray through the middle of each pixel.
         None("none", "None", "one ray a pixel"),
+    }
+}
+
+impl Antialias {
+    /// Rays a pixel that are spread over it.
+    pub fn samples(self) -> u32 {
+        match self {
+            Antialias::None | Antialias::Coverage { .. } => 1,
+            Antialias::Supersample { samples, .. } => samples.max(1),
+        }
+    }
+
+    /// How they are weighted; none where there are no such rays.
+    pub fn filter(self) -> Option<Filter> {
+        match self {
+            Antialias::None | Antialias::Coverage { .. } => None,
+            Antialias::Supersample { filter, .. } => Some(filter),
+        }
     }
 }
 

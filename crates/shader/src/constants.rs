@@ -3,7 +3,8 @@
 use std::fmt::Write;
 use zeroset_field::program::{FLAT, INSIDE_MARKS};
 use zeroset_shade::{
-    air, bsdf, march, occlusion, pattern, sampling, secondary, shadow, skin, surface, view,
+    air, bsdf, coverage, march, occlusion, pattern, sampling, secondary, shadow, skin, surface,
+    view,
 };
 
 /// The value of a constant.
@@ -49,6 +50,24 @@ fn constants() -> Vec<(&'static str, Value)> {
         ("CONE_NEAR", Number(march::CONE_NEAR)),
         ("CONE_STEPS", Whole(march::CONE_STEPS)),
         ("CONE_SMOOTHING", Number(march::CONE_SMOOTHING)),
+        // coverage
+        ("COVERAGE_CORNERS", Whole(coverage::CORNERS as u32)),
+        ("COVERAGE_SMALLEST", Number(coverage::SMALLEST)),
+        ("COVERAGE_PASSES", Whole(coverage::PASSES)),
+        ("COVERAGE_FINE", Number(coverage::FINE)),
+        ("COVERAGE_BENT", Number(coverage::BENT)),
+        ("COVERAGE_SURPRISE", Number(coverage::SURPRISE)),
+        ("COVERAGE_RISE", Number(coverage::RISE)),
+        ("COVERAGE_FALL", Number(coverage::FALL)),
+        ("COVERAGE_BEYOND", Number(coverage::BEYOND)),
+        ("COVERAGE_NEAR", Number(coverage::NEAR)),
+        ("COVERAGE_SURE", Number(coverage::SURE)),
+        ("STEEPEST", Number(march::STEEPEST)),
+        ("COVERAGE_SOLID", Number(coverage::SOLID)),
+        ("COVERAGE_FRACTAL", Number(coverage::FRACTAL)),
+        ("COVERAGE_FALLING", Number(coverage::FALLING)),
+        ("COVERAGE_UNSEEN", Number(coverage::UNSEEN)),
+        ("COVERAGE_STEPS", Whole(coverage::STEPS)),
         // rays from surfaces
         ("SECONDARY_FIRST", Number(secondary::FIRST)),
         ("SECONDARY_STOP", Number(secondary::STOP)),

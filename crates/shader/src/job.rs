@@ -21,6 +21,7 @@ use zeroset_scene::settings::{
     Antialias, Filter, Integrator, March, Occlusion, Settings, Shading, Shadow,
 };
 use zeroset_shade::air::Air;
+use zeroset_shade::coverage::LAYERS;
 use zeroset_shade::light::luminance;
 use zeroset_shade::skin::has_skins;
 use zeroset_shade::view::{Region, View};
@@ -341,7 +342,7 @@ pub(crate) fn bounces(settings: &Settings) -> Option<[u32; 2]> {
 fn seen(frame: Frame, camera: &Camera, size: [u32; 2], antialias: Antialias) -> Frame {
     let view = View::new(camera, size, frame.footprint);
     let (samples, filter) = match antialias {
-        Antialias::None => (0, Filter::Box),
+        Antialias::None | Antialias::Coverage { .. } => (0, Filter::Box),
         Antialias::Supersample { samples, filter } => (samples.max(1), filter),
     };
     Frame {
@@ -358,6 +359,10 @@ fn seen(frame: Frame, camera: &Camera, size: [u32; 2], antialias: Antialias) -> 
         rounding: [view.rounding.slope, view.rounding.constant],
         size,
         half: view.half,
+        layers: match antialias {
+            Antialias::Coverage { layers } => layers.min(LAYERS),
+            Antialias::None | Antialias::Supersample { .. } => 0,
+        },
         samples,
         filter_kind: number(&filter),
         ..frame

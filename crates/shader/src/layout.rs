@@ -181,6 +181,14 @@ shared! {
         fog: [f32; 3],
         /// What fog takes over a scene unit at the height 0; 0 for none.
         density: f32,
+        /// Edges that a pixel may be parted by.
+        layers: u32,
+        /// Not used.
+        pad_a: u32,
+        /// Not used.
+        pad_b: u32,
+        /// Not used.
+        pad_c: u32,
     }
 
     /// What one dispatch covers.
@@ -315,8 +323,9 @@ shared! {
         object: f32,
         /// Evaluations of the primary ray.
         steps: f32,
-        /// Where in its pixel it went through: two fractions of 65,535.
-        jitter: u32,
+        /// Where in its pixel it went through: two fractions of 65,535. Where there is one ray a pixel, the bits of the share of
+        /// the pixel that is covered.
+        place: u32,
     }
 
     /// Filtered sums of a pixel.

@@ -21,8 +21,9 @@ use zeroset_scene::material::Pattern;
 use zeroset_scene::methods::Choice;
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{
-    Filter, Integrator, March, Normals, Occlusion, Settings, Shading, Shadow,
+    Antialias, Filter, Integrator, March, Normals, Occlusion, Settings, Shading, Shadow,
 };
+use zeroset_shade::coverage::LAYERS;
 
 /// The text of a module, and what the module must find.
 pub(crate) struct Text {
@@ -52,6 +53,8 @@ pub(crate) struct Key {
     /// Rays that may wait to be followed: as many as go on one after the other, and one more.
     waiting: u32,
     ways: &'static [Stage],
+    /// How pixels are parted.
+    parts: Stage,
     occlusion: BTreeSet<Case>,
     /// Whether any light casts a shadow.
     shadows: bool,
@@ -150,7 +153,15 @@ impl Key {
             march: marcher(&scene.settings().march),
             normals: normals(scene.settings().normals),
             shading: scene.settings().shading,
-            waiting: bounces(scene.settings()).map_or(1, |[a, b]| a + b + 1),
+            waiting: bounces(scene.settings()).map_or(1, |[a, b]| a + b + 1)
+                + match scene.settings().antialias {
+                    Antialias::Coverage { .. } => LAYERS,
+                    Antialias::None | Antialias::Supersample { .. } => 0,
+                },
+            parts: match scene.settings().antialias {
+                Antialias::Coverage { .. } => stage!("coverage"),
+                Antialias::None | Antialias::Supersample { .. } => stage!("coverage_none"),
+            },
             ways: ways(scene.settings()),
             occlusion: methods.filter_map(occlusion).collect(),
             shadows: scene.lights().iter().any(|l| casts(&l.shadow)),
@@ -342,6 +353,7 @@ impl Key {
             include_str!("stage/shade.wgsl"),
             include_str!("stage/trace.wgsl"),
         ];
+        stages.push(self.parts.text);
         let chosen = self.march.iter().chain(self.normals).chain(self.ways);
         stages.extend(chosen.map(|stage| stage.text));
         stages.push(if self.steep {

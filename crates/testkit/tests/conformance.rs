@@ -526,3 +526,35 @@ fn steps_are_counted_alike() {
     let found = compare(&scene, &a, &b, &budget);
     assert!(found.share <= budget.share && found.mean < 1.0, "{found:?}");
 }
+
+#[test]
+fn pixels_are_parted_alike() {
+    let gpu = testing::renderer("coverage on the GPU");
+    let renderer = CpuRenderer::new(None).unwrap();
+    for name in [
+        "hello.star",
+        "papers/tomczak_sphere_ground_1.star",
+        "papers/keinert_dodecahedron.star",
+    ] {
+        let mut scene = scene(&scenes::folder().join(name));
+        let coverage = Antialias::Coverage { layers: 4 };
+        scene
+            .edit(|s| s.settings.antialias = coverage)
+            .expect("a scene");
+        let film = on(&renderer, &scene);
+        let rms = |other: &Film, plane: Plane| {
+            let pairs = film.plane(plane).iter().zip(other.plane(plane));
+            let square: f32 = pairs.map(|(x, y)| (x.min(1.0) - y.min(1.0)).powi(2)).sum();
+            (square / film.plane(plane).len() as f32).sqrt()
+        };
+        // what is covered, by counting rays
+        let counted = rms(&reference(&scene), Plane::Coverage);
+        assert!(counted < 0.01, "{name}: {counted} from what rays say");
+        let Some(gpu) = &gpu else { continue };
+        let other = on(gpu, &scene);
+        for plane in [Plane::Colour, Plane::Coverage, Plane::Normal] {
+            let off = rms(&other, plane);
+            assert!(off < 0.01, "{name} {plane:?}: {off} on the GPU");
+        }
+    }
+}

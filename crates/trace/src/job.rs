@@ -6,14 +6,14 @@ use crate::march::ORDINAL;
 use crate::normal::{normals, place};
 use crate::order::{self, PLACE};
 use crate::path::PathTracer;
-use crate::paths::PathRay;
+use crate::paths::{PathRay, PathState};
 use crate::renderer::{Done, PreparedScene};
 use crate::simd::{load, splat, store, store3};
 use crate::stop::Stop;
 use crate::surface::marks;
 use crate::tile::{Area, HEIGHT, Scratch, Solid, WIDTH};
 use crate::whitted::Whitted;
-use crate::{cone, primary, resolve};
+use crate::{cone, coverage, primary, resolve};
 use fearless_simd::{Simd, prelude::*};
 use std::ops::Range;
 use zeroset_number::{Lanes, Vec3, v3};
@@ -21,7 +21,7 @@ use zeroset_scene::accumulator::{Accumulator, Sum};
 use zeroset_scene::camera::Camera;
 use zeroset_scene::film::Plane;
 use zeroset_scene::material::Material;
-use zeroset_scene::settings::{self, Filter};
+use zeroset_scene::settings::{self, Antialias, Filter};
 use zeroset_shade::air::behind;
 use zeroset_shade::light::discs;
 use zeroset_shade::sampling::{point, scramble};
@@ -35,6 +35,8 @@ pub(crate) struct Job<'a> {
     wanted: [bool; Plane::ALL.len()],
     /// Samples a pixel of the finished picture, and their filter.
     samples: Option<(u32, Filter)>,
+    /// Edges that may part a pixel, where its parts are looked for.
+    layers: Option<u32>,
     /// Those that are taken now.
     taken: Range<u32>,
     plan: Plan,
@@ -60,6 +62,10 @@ impl<'a> Job<'a> {
             view: View::new(camera, into.size(), settings.footprint),
             wanted,
             samples,
+            layers: match into.antialias() {
+                Antialias::Coverage { layers } => Some(layers),
+                Antialias::None | Antialias::Supersample { .. } => None,
+            },
             taken,
             plan: Plan {
                 march: settings.march,
@@ -168,7 +174,8 @@ impl<'a> Job<'a> {
     ) -> u64 {
         let settings = self.picture.scene.settings();
         if index == self.taken.start {
-            let reach = if self.samples.is_some() { 0.5 } else { 0.0 };
+            let spread = self.samples.is_some() || self.layers.is_some();
+            let reach = if spread { 0.5 } else { 0.0 };
             cone::prepass(
                 s,
                 solid,
@@ -182,6 +189,10 @@ impl<'a> Job<'a> {
             q.steps.fill(0.0);
         }
         primary::aim(s, solid.view, area, &q.jitter, &mut q.queue);
+        match self.layers {
+            Some(layers) => coverage::part(s, solid, area, layers, q),
+            None => q.paths.begin(),
+        }
         let (queue, memory) = q.split();
         q.counts.march += closest(s, &self.plan, solid, queue, memory);
         self.surfaces(s, solid, self.wants(Plane::Residual), q);
@@ -228,7 +239,6 @@ impl<'a> Job<'a> {
                 ..self.plan
             },
         );
-        q.paths.begin();
         integrator.integrate(s, sample, q);
         self.gather(s, sample.area, q);
         // the spans of the rays from the eye are those of the next sample too
@@ -258,13 +268,16 @@ impl<'a> Job<'a> {
             settings::Integrator::Path { clamp, .. } => clamp,
             settings::Integrator::Whitted { .. } | settings::Integrator::Direct => None,
         };
-        let mut add = |pixel: usize, light: Vec3<f32>| {
-            let at = usize::from(PLACE[pixel]);
+        let (colour, coverage) = (&mut q.planes.colour, &mut q.planes.coverage);
+        let mut add = |state: &PathState, light: Vec3<f32>| {
             let light = match most {
-                Some(most) => light * (most / light.max_component().max(1e-30)).min(1.0),
-                None => light,
+                Some(most) if !state.is_from_eye => {
+                    light * (most / light.max_component().max(1e-30)).min(1.0)
+                }
+                _ => light,
             };
-            for (column, x) in q.planes.colour.iter_mut().zip(light.array()) {
+            let at = usize::from(PLACE[state.pixel]);
+            for (column, x) in colour.iter_mut().zip(light.array()) {
                 column[at] += x;
             }
         };
@@ -273,19 +286,26 @@ impl<'a> Job<'a> {
             q.paths.meets(number);
             let [r, g, b] = &q.hits.colour;
             let state = q.paths.state(number);
-            add(state.pixel, state.weight.times(v3(r[i], g[i], b[i])));
+            add(&state, state.weight.times(v3(r[i], g[i], b[i])));
+            if state.is_from_eye {
+                coverage[usize::from(PLACE[state.pixel])] += state.weight.x;
+            }
         }
         let scene = &self.picture.scene;
         let sky = SkyColours::of(scene.sky());
-        for PathRay { ray, state } in q.paths.missed() {
+        for PathRay { ray, state, .. } in q.paths.missed() {
             // what lights the scene, or what is seen
             let share = if state.is_scattered { sky.ambient } else { 1.0 };
             let air = &self.picture.air;
-            let mut seen = behind(&sky, air, ray.origin.y, ray.direction, false) * share;
+            let mut seen =
+                behind(&sky, air, ray.origin.y, ray.direction, state.is_from_eye) * share;
             if state.sees_lights {
                 seen = seen + discs(scene.lights(), ray.direction);
             }
-            add(state.pixel, state.weight.times(seen));
+            add(state, state.weight.times(seen));
+        }
+        if self.layers.is_some() && self.wants_surface() {
+            (q.planes).add(&q.hits, |number| q.paths.state(number), None);
         }
     }
 
@@ -325,12 +345,21 @@ impl<'a> Job<'a> {
             }
             planes.coverage[at] = 1.0;
         }
-        if Plane::ALL
-            .iter()
-            .any(|p| !matches!(p, Plane::Colour | Plane::Coverage) && self.wants(*p))
-        {
-            planes.add(hits, self.plan.steps.then_some(&*q.steps));
+        for (pixel, share) in q.paths.parted() {
+            let at = usize::from(PLACE[pixel]);
+            let columns = planes.colour.iter_mut().chain([&mut planes.coverage]);
+            columns.for_each(|column| column[at] *= share);
         }
+        if self.wants_surface() {
+            let missed = self.plan.steps.then_some(&*q.steps);
+            planes.add(hits, |number| q.paths.state(number), missed);
+        }
+    }
+
+    /// Whether anything but colour and coverage is wanted.
+    fn wants_surface(&self) -> bool {
+        let is_surface = |p: &Plane| !matches!(p, Plane::Colour | Plane::Coverage);
+        Plane::ALL.iter().any(|p| is_surface(p) && self.wants(*p))
     }
 
     /// Fills the tile with the sky. (Its colours are so smooth that the middle of a pixel does for all its samples.)

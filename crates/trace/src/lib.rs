@@ -32,6 +32,7 @@ pub mod bench;
 mod bracket;
 mod closest;
 mod cone;
+mod coverage;
 mod integrator;
 mod isolate;
 mod job;

@@ -7,7 +7,7 @@ use crate::ao;
 use crate::integrator::{Integrator, TileSample, add_light, darken, left, lose, shade};
 use crate::march::ORDINAL;
 use crate::order;
-use crate::paths::{PathRay, PathState};
+use crate::paths::PathState;
 use crate::ray::WideRay;
 use crate::secondary::{Aim, from_hits};
 use crate::shadow::{Hard, unshadowed};
@@ -214,14 +214,19 @@ impl PathTracer {
             },
         );
         for i in 0..q.hits.count {
-            if let Some(path) = self.next(sample, q, i) {
-                q.paths.push(path);
+            if let Some((ray, state)) = self.next(sample, q, i) {
+                q.paths.push(ray, state);
             }
         }
     }
 
     /// The ray that goes on from hit number `i`, if one does.
-    fn next(&self, sample: &TileSample<'_>, q: &Scratch, i: usize) -> Option<PathRay> {
+    fn next(
+        &self,
+        sample: &TileSample<'_>,
+        q: &Scratch,
+        i: usize,
+    ) -> Option<(WideRay<f32>, PathState)> {
         let (hits, bounce) = (&q.hits, &q.bounce);
         let state = q.paths.state((hits.word[i] & ORDINAL) as usize);
         let inside = hits.word[i] & INSIDE != 0;
@@ -253,14 +258,14 @@ impl PathTracer {
         };
         let ray = hits.rays.get(&hits.common, i);
         let side = if through { -1.0 } else { 1.0 };
-        Some(PathRay {
-            ray: WideRay {
+        Some((
+            WideRay {
                 origin: hits.point(i) + hits.normal(i) * (hits.offset[i] * side),
                 direction: vector(&bounce.direction),
                 travelled: ray.way(hits.t[i]),
                 ..ray
             },
-            state: PathState {
+            PathState {
                 weight,
                 medium,
                 bounces: state.bounces + 1,
@@ -268,6 +273,6 @@ impl PathTracer {
                 sees_lights: bounce.lobe[i] > 1.5,
                 ..state
             },
-        })
+        ))
     }
 }

@@ -10,6 +10,8 @@ use zeroset_number::{Vec3, v3};
 pub(crate) struct PathRay {
     pub(crate) ray: WideRay<f32>,
     pub(crate) state: PathState,
+    /// Where along it there may be something: infinity where there is nothing.
+    pub(crate) start: f32,
 }
 
 /// What is known of the way from the eye to where a ray begins.
@@ -31,6 +33,8 @@ pub(crate) struct PathState {
     pub(crate) is_scattered: bool,
     /// Whether the last surface was that of a clear body, behind which no ray looks for lights.
     pub(crate) sees_lights: bool,
+    /// Whether the ray comes from the eye: it shows a part of its pixel.
+    pub(crate) is_from_eye: bool,
 }
 
 /// The rays that go on in a tile.
@@ -41,6 +45,10 @@ pub(crate) struct Paths {
     waiting: [Vec<PathRay>; 2],
     /// Which of the queue met a surface.
     met: Vec<bool>,
+    /// How much of their pixels the rays of the queue show that come from the eye.
+    shares: Vec<f32>,
+    /// The pixels whose share is not the whole.
+    parted: Vec<usize>,
 }
 
 impl Paths {
@@ -49,13 +57,29 @@ impl Paths {
             followed: Vec::with_capacity(TILE_RAYS),
             waiting: [(); 2].map(|()| Vec::with_capacity(TILE_RAYS)),
             met: vec![false; TILE_RAYS],
+            shares: vec![1.0; TILE_RAYS],
+            parted: Vec::new(),
         }
     }
 
-    /// The queue holds rays from the eye, and none goes on yet.
+    /// The queue holds rays from the eye, which show all of their pixels, and none goes on yet.
     pub(crate) fn begin(&mut self) {
         self.followed.clear();
         self.waiting.iter_mut().for_each(Vec::clear);
+        for pixel in self.parted.drain(..) {
+            self.shares[pixel] = 1.0;
+        }
+    }
+
+    /// The ray of the queue through a pixel shows this part of it.
+    pub(crate) fn set_share(&mut self, pixel: usize, share: f32) {
+        self.shares[pixel] = share;
+        self.parted.push(pixel);
+    }
+
+    /// The pixels that the rays of the queue from the eye show a part of only, and how much.
+    pub(crate) fn parted(&self) -> impl Iterator<Item = (usize, f32)> {
+        self.parted.iter().map(|&pixel| (pixel, self.shares[pixel]))
     }
 
     /// Whether the queue holds rays from the eye.
@@ -65,7 +89,10 @@ impl Paths {
 
     /// The state of a ray of the queue.
     pub(crate) fn state(&self, number: usize) -> PathState {
-        (self.followed.get(number)).map_or(PathState::from_eye(number), |path| path.state)
+        match self.followed.get(number) {
+            Some(path) => path.state,
+            None => PathState::from_eye(number, self.shares[number]),
+        }
     }
 
     /// Number of the pixel of a ray of the queue.
@@ -75,9 +102,19 @@ impl Paths {
             .map_or(number, |path| path.state.pixel)
     }
 
-    /// A ray that is to be followed.
-    pub(crate) fn push(&mut self, path: PathRay) {
-        self.waiting[usize::from(path.state.medium.is_some())].push(path);
+    /// A ray that goes on from a surface.
+    pub(crate) fn push(&mut self, ray: WideRay<f32>, state: PathState) {
+        let state = PathState {
+            is_from_eye: false,
+            ..state
+        };
+        let start = 0.0;
+        self.waiting[usize::from(state.medium.is_some())].push(PathRay { ray, state, start });
+    }
+
+    /// A ray from the eye that is followed later than those of the queue.
+    pub(crate) fn push_from_eye(&mut self, path: PathRay) {
+        self.waiting[0].push(path);
     }
 
     /// Fills the queue with rays that wait, as many as it holds, all of them inside clear bodies or none. Gives whether they are inside;
@@ -91,7 +128,7 @@ impl Paths {
         queue.count = 0;
         queue.common = Common::default();
         let reach = solid.view.threshold;
-        for PathRay { ray, .. } in &self.followed {
+        for PathRay { ray, start, .. } in &self.followed {
             let end = solid
                 .region
                 .leave(
@@ -101,7 +138,7 @@ impl Paths {
                     reach.at(ray.travelled),
                 )
                 .min(solid.view.far);
-            queue.push(ray, 0.0, end);
+            queue.push(ray, *start, end);
         }
         self.met[..queue.count].fill(false);
         (queue.count > 0).then_some(inside)
@@ -119,17 +156,18 @@ impl Paths {
 }
 
 impl PathState {
-    /// That of a ray from the eye.
-    fn from_eye(pixel: usize) -> PathState {
+    /// That of a ray from the eye which shows this much of its pixel.
+    pub(crate) fn from_eye(pixel: usize, share: f32) -> PathState {
         PathState {
             pixel,
-            weight: v3(1.0, 1.0, 1.0),
+            weight: v3(share, share, share),
             reflections: 0,
             refractions: 0,
             medium: None,
             bounces: 0,
             is_scattered: false,
             sees_lights: false,
+            is_from_eye: true,
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::march::ORDINAL;
 use crate::order::PLACE;
+use crate::paths::PathState;
 use crate::simd::Sheet;
 use crate::tile::{Hits, WIDTH};
 use zeroset_scene::accumulator::Sum;
@@ -62,17 +63,27 @@ impl Planes {
         self.depth.fill(f32::INFINITY);
     }
 
-    /// Adds the hits of a sample, and the steps of the rays that hit nothing if they were counted.
-    pub(crate) fn add(&mut self, hits: &Hits, missed: Option<&Sheet>) {
+    /// Adds the hits of rays from the eye, and the steps of those that hit nothing if they were counted. `state` says of each ray, by
+    /// its number, what it shows.
+    pub(crate) fn add(
+        &mut self,
+        hits: &Hits,
+        state: impl Fn(usize) -> PathState,
+        missed: Option<&Sheet>,
+    ) {
         for i in 0..hits.count {
-            let at = usize::from(PLACE[(hits.word[i] & ORDINAL) as usize]);
-            self.hits[at] += 1.0;
-            for k in 0..3 {
-                self.normal[k][at] += hits.normal[k][i];
-                self.albedo[k][at] += hits.material.albedo[k][i];
+            let state = state((hits.word[i] & ORDINAL) as usize);
+            if !state.is_from_eye {
+                continue;
             }
-            self.occlusion[at] += hits.open[i];
-            self.shadow[at] += hits.shadow[i];
+            let (at, share) = (usize::from(PLACE[state.pixel]), state.weight.x);
+            self.hits[at] += share;
+            for k in 0..3 {
+                self.normal[k][at] += hits.normal[k][i] * share;
+                self.albedo[k][at] += hits.material.albedo[k][i] * share;
+            }
+            self.occlusion[at] += hits.open[i] * share;
+            self.shadow[at] += hits.shadow[i] * share;
             self.steps[at] += hits.steps[i];
             if hits.t[i] < self.depth[at] {
                 self.depth[at] = hits.t[i];

@@ -96,7 +96,7 @@ impl CpuRenderer {
     pub fn memory(&self, scene: &Scene, planes: &[Plane]) -> u64 {
         let size = scene.settings().size;
         let scratch = match scene.settings().antialias {
-            Antialias::None => 0,
+            Antialias::None | Antialias::Coverage { .. } => 0,
             Antialias::Supersample { .. } => sums(size),
         };
         accumulator::bytes(size, planes) + scratch

@@ -1,6 +1,7 @@
 //! The part of a picture that one thread works on at a time, and all the memory that this takes.
 
 use crate::ao::SharedOcclusion;
+use crate::coverage::Coverage;
 use crate::march::ITERATIONS;
 use crate::order::Sorting;
 use crate::path::BounceColumns;
@@ -274,6 +275,8 @@ pub(crate) struct Scratch {
     pub(crate) hits: Hits,
     /// Rays that go on from hits.
     pub(crate) paths: Paths,
+    /// The parts of pixels.
+    pub(crate) coverage: Coverage,
     /// Occlusion that several samples share.
     pub(crate) shared: SharedOcclusion,
     /// How many hits there are of each kind of occlusion.
@@ -369,6 +372,7 @@ impl Scratch {
                 colour: sheet3(),
             },
             paths: Paths::new(),
+            coverage: Coverage::new(),
             shared: SharedOcclusion::new(),
             ends: Vec::new(),
             steps: Sheet::boxed(),

@@ -2,7 +2,7 @@
 
 use crate::integrator::{Integrator, TileSample, identify, left, light, lose};
 use crate::march::ORDINAL;
-use crate::paths::{PathRay, PathState};
+use crate::paths::PathState;
 use crate::ray::WideRay;
 use crate::simd::INSIDE;
 use crate::tile::Scratch;
@@ -72,7 +72,7 @@ impl Whitted {
                     direction,
                     ..next
                 };
-                q.paths.push(PathRay { ray, state });
+                q.paths.push(ray, state);
             }
             bright
         };

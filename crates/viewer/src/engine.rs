@@ -626,6 +626,8 @@ impl Worker<'_> {
 fn own_rung(look: &Look, rung: &Rung) -> Rung {
     let antialias = match (look.settings.antialias, rung.antialias) {
         (Antialias::None, _) | (_, Antialias::None) => Antialias::None,
+        (own @ Antialias::Coverage { .. }, _) => own,
+        (own, Antialias::Coverage { .. }) => own,
         (Supersample { filter, .. }, Supersample { samples, .. }) => {
             Supersample { samples, filter }
         }

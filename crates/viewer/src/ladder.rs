@@ -23,10 +23,7 @@ pub struct Rung {
 impl Rung {
     /// Rays a pixel.
     pub fn samples(&self) -> u32 {
-        match self.antialias {
-            Antialias::None => 1,
-            Antialias::Supersample { samples, .. } => samples,
-        }
+        self.antialias.samples()
     }
 }
 
@@ -55,6 +52,12 @@ pub fn rungs(
         size: full,
         antialias: Antialias::None,
     });
+    if matches!(antialias, Antialias::Coverage { .. }) {
+        rungs.push(Rung {
+            size: full,
+            antialias,
+        });
+    }
     if let Antialias::Supersample { samples, filter } = antialias {
         let last = if refine {
             samples.max(RUNGS[3])

@@ -13,7 +13,7 @@ use zeroset_scene::film::Plane;
 use zeroset_scene::methods::Choice;
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{
-    Antialias, Filter, Integrator, March, Normals, Occlusion, Shading, Shadow, Tone,
+    Antialias, Integrator, March, Normals, Occlusion, Shading, Shadow, Tone,
 };
 
 /// Renders signed distance fields: from a scene of a few lines to a picture.
@@ -205,10 +205,7 @@ impl Methods {
         put("ao", self.ao, &mut settings.occlusion, limits)?;
         put("aa", self.aa, &mut settings.antialias, limits)?;
         if let Some(samples) = self.spp {
-            let filter = match settings.antialias {
-                Antialias::Supersample { filter, .. } => filter,
-                Antialias::None => Filter::default(),
-            };
+            let filter = settings.antialias.filter().unwrap_or_default();
             let chosen = Chosen(Antialias::Supersample { samples, filter });
             put("spp", Some(chosen), &mut settings.antialias, limits)?;
         }

@@ -50,10 +50,7 @@ impl Observer for Deadline {
 /// See [`RenderError`].
 pub(crate) fn cost(scene: &Scene) -> Result<Cost, RenderError> {
     let size = scene.settings().size;
-    let rays_per_pixel = match scene.settings().antialias {
-        Antialias::None => 1,
-        Antialias::Supersample { samples, .. } => samples.max(1),
-    };
+    let rays_per_pixel = scene.settings().antialias.samples();
     let renderer = CpuRenderer::new(Some(1))?;
     // beside the film, the picture that becomes a PNG is as large as its colour plane
     let pixels = u64::from(size[0]) * u64::from(size[1]);

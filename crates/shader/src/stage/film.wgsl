@@ -26,20 +26,31 @@ fn gather(@builtin(global_invocation_id) id: vec3u) {
                 continue;
             }
             let place = (u32(source.y) - frame.band.x) * frame.size.x + u32(source.x);
-            let to = unpack2x16unorm(samples[place].jitter) - 0.5 + vec2f(f32(dx), f32(dy));
-            let w = filter_weight(to.x) * filter_weight(to.y);
+            var w = 1.0;
+            if (frame.samples != 0u) {
+                let to = unpack2x16unorm(samples[place].place) - 0.5 + vec2f(f32(dx), f32(dy));
+                w = filter_weight(to.x) * filter_weight(to.y);
+            }
             light.colour += samples[place].colour * w;
-            light.cover += select(0.0, w, samples[place].depth >= 0.0);
+            light.cover += cover_of(place) * w;
             light.weight += w;
         }
     }
     if (wants_detail()) {
         let own = samples[(pixel.y - frame.band.x) * frame.size.x + pixel.x];
         light.steps += own.steps;
-        light.hits += select(0.0, 1.0, own.depth >= 0.0);
+        light.hits += cover_of((pixel.y - frame.band.x) * frame.size.x + pixel.x);
         gather_surface(at, own);
     }
     light_sums[at] = light;
+}
+
+/// How much of a ray's part of the picture is covered.
+fn cover_of(place: u32) -> f32 {
+    if (frame.samples == 0u) {
+        return bitcast<f32>(samples[place].place);
+    }
+    return select(0.0, 1.0, samples[place].depth >= 0.0);
 }
 
 /// Adds a pixel's own ray to the sums of what it hit.

@@ -47,30 +47,36 @@ struct Onward {
     /// Where the random numbers of the way come from.
     pixel: vec2u,
     index: u32,
+    /// The part of the ray that may hold the surface, and the field's slope where that begins, as far as it is known.
+    start: f32,
+    slope: f32,
+    end: f32,
 }
+
+/// The ray comes from the eye: it shows as much of its pixel as it weighs.
+const FROM_EYE: u32 = 0x80000000u;
 
 /// Follows ray number `index` of a pixel. `span` is the part of it that may hold the surface.
 fn trace_ray(pixel: vec2u, index: u32, ray: Ray, span: vec3f) -> Sample {
-    var first = Sample();
+    var seen = Sample();
+    seen.depth = -1.0;
+    var cover = 0.0;
     var waiting: array<Onward, WAITING>;
-    var count = 1u;
-    waiting[0] = Onward(ray, vec3f(1.0), vec2u(0u), -1.0, 0u, pixel, index);
-    var is_first = true;
+    let start = max(max(enter(ray, frame.threshold.x, frame.threshold.y), frame.near), span.x);
+    let own = Onward(ray, vec3f(1.0), vec2u(0u), -1.0, FROM_EYE, pixel, index, start, span.y, span.z);
+    var count = parts_of_pixel(own, &waiting);
     while (count > 0u) {
         count -= 1u;
         let path = waiting[count];
         var next = array<Onward, 2>();
-        var known = vec3f(0.0, -1.0, FAR);
-        if (is_first) {
-            known = span;
-        }
-        let found = follow(pixel, index, path, known, is_first, &next);
-        if (is_first) {
-            first = found;
+        let found = follow(path, &next);
+        if ((path.flags & FROM_EYE) != 0u) {
+            let share = path.weight.x;
+            cover += select(0.0, share, found.depth >= 0.0);
+            seen = with_part(seen, found, share);
         } else {
-            first.colour += clamped(path.weight * found.colour);
+            seen.colour += clamped(path.weight * found.colour);
         }
-        is_first = false;
         if (gives_up()) {
             break;
         }
@@ -81,7 +87,27 @@ fn trace_ray(pixel: vec2u, index: u32, ray: Ray, span: vec3f) -> Sample {
             }
         }
     }
-    return first;
+    seen.place = bitcast<u32>(cover);
+    return seen;
+}
+
+/// A pixel with what one more of its rays from the eye found, which shows this much of it.
+fn with_part(pixel: Sample, found: Sample, share: f32) -> Sample {
+    var seen = pixel;
+    seen.colour += found.colour * share;
+    seen.steps += found.steps;
+    if (found.depth >= 0.0) {
+        seen.normal += found.normal * share;
+        seen.albedo += found.albedo * share;
+        seen.open += found.open * share;
+        seen.shadow += found.shadow * share;
+        if (seen.depth < 0.0 || found.depth < seen.depth) {
+            seen.depth = found.depth;
+            seen.residual = found.residual;
+            seen.object = found.object;
+        }
+    }
+    return seen;
 }
 
 /// Light as far as it may count.
@@ -90,19 +116,15 @@ fn clamped(light: vec3f) -> vec3f {
 }
 
 /// Follows one ray. Rays that go on from where it ends are left in `next`, those that weigh nothing do not.
-fn follow(pixel: vec2u, index: u32, path: Onward, span: vec3f, is_first: bool, next: ptr<function, array<Onward, 2>>) -> Sample {
+fn follow(path: Onward, next: ptr<function, array<Onward, 2>>) -> Sample {
     let ray = path.ray;
     march_side = select(1.0, -1.0, path.medium >= 0.0);
     let reach = frame.threshold.y + frame.threshold.x * ray.travelled;
-    var start = span.x;
-    if (is_first) {
-        start = max(max(enter(ray, frame.threshold.x, frame.threshold.y), frame.near), span.x);
-    }
-    let end = min(min(leave(ray, frame.threshold.x, reach), frame.far), span.z);
-    if (!(start < end)) {
+    let end = min(min(leave(ray, frame.threshold.x, reach), frame.far), path.end);
+    if (!(path.start < end)) {
         return background(path, 0u);
     }
-    let found = march(ray, start, end, span.y);
+    let found = march(ray, path.start, end, path.slope);
     counted[COUNT_MARCH] += found.steps + found.refined;
     if (!found.hit) {
         return background(path, found.steps);
@@ -144,7 +166,7 @@ fn follow(pixel: vec2u, index: u32, path: Onward, span: vec3f, is_first: bool, n
     // from here on only what is outside matters
     march_side = 1.0;
     counted[COUNT_MATERIAL] += 1u;
-    let key = scramble(pixel, frame.seed ^ ((index + 1u) * HIT_SEEDS));
+    let key = scramble(path.pixel, frame.seed ^ ((path.index + 1u) * HIT_SEEDS));
     let object = select(frame.objects, u32(max(marks.object, 0.0)), marks.object >= 0.0 && marks.object < f32(frame.objects));
     // inside a solid there is no sky: it is shown as if there were no solid
     var seen = AmbientVisibility(1.0, normal);
@@ -165,7 +187,7 @@ fn follow(pixel: vec2u, index: u32, path: Onward, span: vec3f, is_first: bool, n
     } else if (path.medium >= 0.0 || what.finish.w > 0.0) {
         colour *= transmittance(body_of(path, marks.first).attenuation, t);
     }
-    counted[COUNT_HITS] += select(0u, 1u, is_first);
+    counted[COUNT_HITS] += select(0u, 1u, (path.flags & FROM_EYE) != 0u);
     return Sample(
         colour,
         t,

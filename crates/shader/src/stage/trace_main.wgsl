@@ -12,14 +12,16 @@ fn trace(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_ind
         }
         let within = jitter(pixel, tile.index);
         var found = trace_ray(pixel, tile.index, camera_ray(vec2f(pixel) + within), span);
-        found.jitter = pack2x16unorm(within);
+        if (frame.samples != 0u) {
+            found.place = pack2x16unorm(within);
+        }
         let at = (pixel.y - frame.band.x) * frame.size.x + pixel.x;
         if (wants_detail()) {
             samples[at] = found;
         } else {
             samples[at].colour = found.colour;
             samples[at].depth = found.depth;
-            samples[at].jitter = found.jitter;
+            samples[at].place = found.place;
         }
         counted[COUNT_RAYS] += 1u;
     }

@@ -140,7 +140,9 @@ fn trace(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_ind
             let within = jitter(pixel, tile.index);
             var found = trace_ray(pixel, tile.index, camera_ray(vec2f(pixel) + within), vec3f(0.0, -1.0, FAR));
             if (asked == 0u) {
-                found.jitter = pack2x16unorm(within);
+                if (frame.samples != 0u) {
+                    found.place = pack2x16unorm(within);
+                }
                 samples[(pixel.y - frame.band.x) * frame.size.x + pixel.x] = found;
                 counted[COUNT_RAYS] += 1u;
                 notes[note_first] = TRACED;

@@ -115,6 +115,6 @@ fn go_on(path: Onward, at: Surface, t: f32, what: LocalMaterial, material: f32, 
     let ray = Ray(at.point + at.normal * (at.offset * side), way.xyz, path.ray.narrow, t + path.ray.travelled);
     var flags = path.flags & SCATTERED;
     flags |= select(0u, SCATTERED, lobe < 0.5) | select(0u, SEES_LIGHTS, lobe > 1.5);
-    (*next)[0] = Onward(ray, weight, path.bounces + vec2u(1u, 0u), medium, flags, path.pixel, path.index);
+    (*next)[0] = Onward(ray, weight, path.bounces + vec2u(1u, 0u), medium, flags, path.pixel, path.index, 0.0, -1.0, FAR);
     return 1.0;
 }

@@ -169,12 +169,15 @@ struct Plain<'a> {
     fallback: Material,
 }
 
+/// Rays along a side of a pixel of which the covered parts are wanted: that many squared are close to the area.
+const COVERING: u32 = 8;
+
 impl Plain<'_> {
     /// Rays a pixel.
     fn samples(&self) -> u32 {
         match self.settings.antialias {
-            Antialias::None => 1,
-            Antialias::Supersample { samples, .. } => samples.max(1),
+            Antialias::Coverage { .. } => COVERING * COVERING,
+            Antialias::None | Antialias::Supersample { .. } => self.settings.antialias.samples(),
         }
     }
 
@@ -198,6 +201,15 @@ impl Plain<'_> {
     fn jitter(&self, x: u32, y: u32, index: u32) -> [f32; 2] {
         match self.settings.antialias {
             Antialias::None => [0.5; 2],
+            // what the areas of parts are found to be: a grid over the pixel, turned a little
+            Antialias::Coverage { .. } => {
+                let (column, row) = (index % COVERING, index / COVERING);
+                let at = |n: u32, by: u32| {
+                    let within = (by as f32 + 0.5) / COVERING as f32;
+                    (n as f32 + within) / COVERING as f32
+                };
+                [at(column, row), at(row, column)]
+            }
             Antialias::Supersample { .. } => point(index, scramble(x, y, self.settings.seed)),
         }
     }
@@ -492,10 +504,7 @@ impl Plain<'_> {
     fn film(&self, rows: &[Vec<Sample>], samples: u32) -> Film {
         let [width, height] = self.settings.size;
         let mut film = Film::new(width, height);
-        let filter = match self.settings.antialias {
-            Antialias::None => Filter::Box,
-            Antialias::Supersample { filter, .. } => filter,
-        };
+        let filter = self.settings.antialias.filter().unwrap_or(Filter::Box);
         let reach = radius(filter) as i32;
         for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
             let at = (y * width + x) as usize;

@@ -3,6 +3,8 @@
 #![allow(unreachable_pub, reason = "the modules of a test are its own")]
 
 mod compare;
+mod coverage;
+mod edges;
 mod marchers;
 mod methods;
 mod mutants;

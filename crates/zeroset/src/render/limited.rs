@@ -59,10 +59,7 @@ struct Rung {
 
 impl Rung {
     fn samples(&self) -> u32 {
-        match self.antialias {
-            Antialias::None => 1,
-            Antialias::Supersample { samples, .. } => samples.max(1),
-        }
+        self.antialias.samples()
     }
 }
 
