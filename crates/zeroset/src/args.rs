@@ -160,6 +160,20 @@ pub(crate) struct RenderArgs {
     /// share is finished is said on standard error, and the exit code is 5
     #[arg(long, value_name = "SECONDS", value_parser = crate::values::positive)]
     pub time_limit: Option<f64>,
+    /// Render until 95 % intervals are so narrow: of every 100 pixels of each 64x32, 95 are then that near to what they converge to, as a
+    /// share of white on a screen (0.01 is hardly seen). Rays go where the error is. --spp is the most a pixel has on average (65536)
+    #[arg(long, value_name = "SHARE", value_parser = crate::values::positive, help_heading = "Convergence")]
+    pub noise: Option<f64>,
+    /// Keep all rays in this file, every minute, at the end and when Ctrl-C or --time-limit ends the picture
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with_all = ["frames", "watch"], help_heading = "Convergence")]
+    pub checkpoint: Option<PathBuf>,
+    /// Go on from the file of --checkpoint: to the same picture, bit for bit, as if nothing had ended it. With more --spp or less --noise
+    /// it goes on from a finished one
+    #[arg(long, requires = "checkpoint", help_heading = "Convergence")]
+    pub resume: bool,
+    /// Seconds between two checkpoints
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = crate::values::positive, requires = "checkpoint", help_heading = "Convergence")]
+    pub checkpoint_every: f64,
     /// Render again whenever a file that the scene loads is saved, until Ctrl-C
     #[arg(long)]
     pub watch: bool,
