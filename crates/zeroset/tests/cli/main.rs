@@ -2,6 +2,7 @@
 
 mod backend;
 mod compare;
+mod converge;
 mod exits;
 #[cfg(feature = "shaders")]
 mod export;
