@@ -100,7 +100,10 @@ fn what_is_damaged_is_refused() {
         let mut picture = empty();
         let error = read(bytes, &identity(), &mut picture).expect_err(&what());
         assert!(
-            !matches!(error, CheckpointFailure::System(_) | CheckpointFailure::Foreign(_)),
+            !matches!(
+                error,
+                CheckpointFailure::System(_) | CheckpointFailure::Foreign(_)
+            ),
             "{}: {error}",
             what()
         );
@@ -124,7 +127,10 @@ fn what_is_of_another_picture_is_refused_by_name() {
     let bytes = kept();
     for (what, wanted) in [
         ("size", Identity::default().with("size", "7x6")),
-        ("scene", Identity::default().with("size", "7x5").with("scene", "abd")),
+        (
+            "scene",
+            Identity::default().with("size", "7x5").with("scene", "abd"),
+        ),
         ("camera", Identity::default().with("camera", "{}")),
         ("renderer", Identity::default().with("renderer", "CPU")),
     ] {
@@ -134,7 +140,9 @@ fn what_is_of_another_picture_is_refused_by_name() {
         }
     }
     // the same in another order, and with line breaks in a text
-    let broken = Identity::default().with("a", "b\nsize 1x1").with("size", "7x5");
+    let broken = Identity::default()
+        .with("a", "b\nsize 1x1")
+        .with("size", "7x5");
     let (mut picture, mut bytes) = (empty(), Vec::new());
     advance(&mut picture, 1);
     write(&mut bytes, &broken, &picture).unwrap();

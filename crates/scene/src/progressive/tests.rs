@@ -175,7 +175,10 @@ fn errors_fall_by_the_root_of_the_samples() {
     // twice, times what 95 of 100 estimates of it from 63 and 255 differences are below, times Student's quantiles
     let chance = |n: f64| 1.0 + 1.645 / (2.0 * n).sqrt();
     let wanted = 2.0 * chance(63.0) / chance(255.0) * student(63) / student(255);
-    assert!((noise[0] / noise[1] - wanted).abs() < 0.08, "{noise:?}, {wanted}");
+    assert!(
+        (noise[0] / noise[1] - wanted).abs() < 0.08,
+        "{noise:?}, {wanted}"
+    );
     let left = picture.left(0.5 * picture.noise()).unwrap();
     assert!((left - 3.0).abs() < 1e-9);
 }

@@ -3,7 +3,8 @@
 use crate::run::Folder;
 use std::time::{Duration, Instant};
 
-const SCENE: &str = "show(sphere(0.8))\nshow(plane().move(y = -0.8))\nrender(integrator = path(3))\n";
+const SCENE: &str =
+    "show(sphere(0.8))\nshow(plane().move(y = -0.8))\nrender(integrator = path(3))\n";
 
 #[test]
 fn a_picture_ends_when_there_is_little_noise() {
@@ -12,11 +13,18 @@ fn a_picture_ends_when_there_is_little_noise() {
     let summary = ended.json();
     let noise = |s: &serde_json::Value| s["noise"].as_f64().unwrap();
     let rays = |s: &serde_json::Value| s["rays_a_pixel"].as_f64().unwrap();
-    assert!(noise(&summary) <= 0.05 && rays(&summary) >= 100.0, "{summary}");
+    assert!(
+        noise(&summary) <= 0.05 && rays(&summary) >= 100.0,
+        "{summary}"
+    );
     // as many rays as are allowed, and a word on what is left
-    let ended = folder.good("render scene.star --size 70x40 --noise 0.0001 --spp 160 --json --backend cpu");
+    let ended =
+        folder.good("render scene.star --size 70x40 --noise 0.0001 --spp 160 --json --backend cpu");
     let summary = ended.json();
-    assert!(noise(&summary) > 0.0001 && rays(&summary) >= 160.0, "{summary}");
+    assert!(
+        noise(&summary) > 0.0001 && rays(&summary) >= 160.0,
+        "{summary}"
+    );
     assert!(ended.err.contains("--spp allows more"), "{}", ended.err);
     folder.bad("render scene.star --noise 0", 2, &["above 0"]);
     folder.bad("render scene.star --resume", 2, &["--checkpoint"]);
@@ -30,7 +38,10 @@ fn a_killed_picture_goes_on_to_the_bit() {
     let asked = "render scene.star --size 140x70 --noise 0.012 --spp 4096 --backend cpu";
     folder.good(&format!("{asked} -o whole.exr --threads 1"));
     let asked = format!("{asked} -o parts.exr --checkpoint a.ckpt --checkpoint-every 0.001");
-    let mut child = folder.command(&format!("{asked} --resume")).spawn().unwrap();
+    let mut child = folder
+        .command(&format!("{asked} --resume"))
+        .spawn()
+        .unwrap();
     let began = Instant::now();
     while !folder.path("a.ckpt").exists() {
         assert!(began.elapsed() < Duration::from_secs(120), "no checkpoint");
@@ -39,7 +50,10 @@ fn a_killed_picture_goes_on_to_the_bit() {
     // on Unix this is SIGKILL
     child.kill().unwrap();
     child.wait().unwrap();
-    assert!(!folder.path("parts.exr").exists(), "it was finished before it was killed");
+    assert!(
+        !folder.path("parts.exr").exists(),
+        "it was finished before it was killed"
+    );
     let ended = folder.good(&format!("{asked} --resume --threads 2"));
     assert!(ended.err.contains("Going on from"), "{}", ended.err);
     assert!(folder.read("parts.exr") == folder.read("whole.exr"));
@@ -55,7 +69,11 @@ fn other_checkpoints_are_refused() {
     let asked = "--size 40x30 --spp 16 --backend cpu --checkpoint a.ckpt";
     folder.good(&format!("render scene.star {asked}"));
     let held = folder.read("a.ckpt");
-    folder.bad(&format!("render scene.star {asked}"), 4, &["a.ckpt exists already", "--resume"]);
+    folder.bad(
+        &format!("render scene.star {asked}"),
+        4,
+        &["a.ckpt exists already", "--resume"],
+    );
     let bad = |asked: &str, words: &[&str]| {
         folder.bad(&format!("{asked} --resume"), 4, words);
         assert!(folder.read("a.ckpt") == held, "{asked}");
@@ -69,9 +87,15 @@ fn other_checkpoints_are_refused() {
         &["its settings differs", "integrator"],
     );
     folder.write("other.star", SCENE.replace("0.8))", "0.7))"));
-    bad(&format!("render other.star {asked}"), &["another picture", "what the scene shows"]);
+    bad(
+        &format!("render other.star {asked}"),
+        &["another picture", "what the scene shows"],
+    );
     folder.write("moved.star", format!("{SCENE}camera(eye = (0, 0, 5))\n"));
-    bad(&format!("render moved.star {asked}"), &["its camera differs", "eye"]);
+    bad(
+        &format!("render moved.star {asked}"),
+        &["its camera differs", "eye"],
+    );
     // a comment is no other scene, and more rays are no other picture
     folder.write("same.star", format!("# the same\n{SCENE}"));
     let more = "--size 40x30 --spp 48 --backend cpu --checkpoint a.ckpt";
@@ -81,9 +105,17 @@ fn other_checkpoints_are_refused() {
     let middle = damaged.len() / 2;
     damaged[middle] ^= 4;
     folder.write("a.ckpt", &damaged);
-    folder.bad(&format!("render scene.star {more} --resume"), 4, &["damaged", "check sum"]);
+    folder.bad(
+        &format!("render scene.star {more} --resume"),
+        4,
+        &["damaged", "check sum"],
+    );
     folder.write("a.ckpt", "no checkpoint at all");
-    folder.bad(&format!("render scene.star {more} --resume"), 4, &["it is not a checkpoint"]);
+    folder.bad(
+        &format!("render scene.star {more} --resume"),
+        4,
+        &["it is not a checkpoint"],
+    );
 }
 
 #[test]
