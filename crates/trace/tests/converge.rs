@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 use zeroset_language::load::{Language, Options, load_text};
-use zeroset_scene::film::Plane;
-use zeroset_scene::progressive::Progressive;
+use zeroset_scene::film::{Film, Plane};
+use zeroset_scene::progressive::{Progressive, USUAL};
 use zeroset_scene::render::{Renderer, Silent};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Filter};
@@ -32,6 +32,12 @@ fn converged(renderer: &CpuRenderer, scene: &Scene, seed: u32, noise: f64) -> Pr
         assert!(picture.rounds() < 500, "it never ends");
     }
     picture
+}
+
+/// Whether places have different numbers of samples.
+fn is_uneven(picture: &Progressive) -> bool {
+    let [width, height] = picture.size().map(u64::from);
+    picture.rays() != u64::from(picture.rounds() * USUAL) * width * height
 }
 
 /// The floor below a black ball in a white sky: what the ball covers of the sky is, by the cosine law, F = R^2 h / (h^2 + a^2)^(3/2) at a
@@ -71,8 +77,7 @@ render(footprint = 0.01, ao = none(), integrator = path(), aa = supersample(16, 
     let (mut held, mut off, mut uneven) = (0, 0.0, 0);
     for seed in 0..SEEDS {
         let picture = converged(&renderer, &scene, seed, 0.02);
-        let map = picture.plan(Some(0.02));
-        uneven += u32::from(map.count(0) != map.count(1));
+        uneven += u32::from(is_uneven(&picture));
         for i in 0..SIZE[0] * SIZE[1] {
             let (interval, right) = (
                 picture.interval(i as usize),
@@ -85,6 +90,7 @@ render(footprint = 0.01, ao = none(), integrator = path(), aa = supersample(16, 
     let all = f64::from(SEEDS * SIZE[0] * SIZE[1]);
     let (share, bias) = (f64::from(held) / all, off / all);
     println!("{share:.4} of the intervals hold the truth, bias {bias:.6}");
+    assert!(uneven > SEEDS / 2, "{uneven} pictures have uneven samples");
     assert!((share - 0.95).abs() < 0.02, "{share}");
     // a standard error of the mean is about 0.02 / sqrt(48000), a ten-thousandth
     assert!(bias.abs() < 5e-4, "{bias}");
@@ -102,9 +108,7 @@ camera(eye = (0, 1, 3), target = (0, 0.4, 0))\nrender(integrator = path(3))";
     });
     assert_eq!(one.rounds(), three.rounds());
     assert!(one.rays() > 0 && one.rays() == three.rays());
-    let map = one.plan(Some(0.08));
-    let counts: Vec<u32> = (0..9).map(|cell| map.count(cell)).collect();
-    assert!(counts.iter().any(|n| *n != counts[0]), "{counts:?}");
+    assert!(is_uneven(&one));
     assert!(one.film() == three.film());
 }
 
@@ -128,11 +132,13 @@ render(integrator = path(2), aa = supersample(16, \"mitchell\"))";
         (Plane::Normal, 0.01),
         (Plane::Albedo, 0.01),
         (Plane::Shadow, 0.02),
-        (Plane::Steps, 0.3),
     ] {
         let pairs = a.plane(plane).iter().zip(b.plane(plane));
         let rms: f32 = pairs.map(|(a, b)| (a - b) * (a - b)).sum();
         let rms = (rms / a.plane(plane).len() as f32).sqrt();
         assert!(rms < tolerance, "{plane:?}: {rms}");
     }
+    let mean = |film: &Film| film.plane(Plane::Steps).iter().sum::<f32>() / (140.0 * 40.0);
+    let ratio = mean(&a) / mean(&b);
+    assert!((ratio - 1.0).abs() < 0.02, "steps: {ratio}");
 }

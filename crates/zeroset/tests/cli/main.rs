@@ -6,6 +6,7 @@ mod converge;
 mod exits;
 #[cfg(feature = "shaders")]
 mod export;
+mod fit;
 mod frames;
 mod hostile;
 mod language;
