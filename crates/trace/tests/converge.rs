@@ -19,12 +19,18 @@ fn scene(text: &str, size: [u32; 2]) -> Scene {
 }
 
 /// Renders until the noise is that small.
-fn converged(renderer: &CpuRenderer, scene: &Scene, seed: u32, noise: f64) -> Progressive {
+fn converged(
+    renderer: &CpuRenderer,
+    scene: &Scene,
+    planes: &[Plane],
+    seed: u32,
+    noise: f64,
+) -> Progressive {
     let settings = *scene.settings();
     let Antialias::Supersample { filter, .. } = settings.antialias else {
         panic!("a scene with several rays a pixel");
     };
-    let mut picture = Progressive::new(settings.size, filter, &Plane::ALL, seed, 0.0);
+    let mut picture = Progressive::new(settings.size, filter, planes, seed, 0.0);
     let mut prepared = renderer.prepare(Arc::new(scene.clone())).unwrap();
     while picture.noise() > noise {
         let (camera, target) = (scene.camera(), Some(noise));
@@ -55,7 +61,7 @@ fn intervals_hold_the_truth_over_200_seeds() {
 show(sphere({radius}).move(y = {height}), material(color = \"black\", roughness = 1, specular = 0))
 sun(strength = 0)\nsky(color = \"white\", ambient = 1)
 camera(eye = ({}, 0.2, 0), target = ({0}, 0, 0), up = (0, 0, -1), lens = orthographic({}))
-render(footprint = 0.01, ao = none(), integrator = path(), aa = supersample(16, \"box\"))",
+render(footprint = 0.01, ao = none(), prepass = False, integrator = path(), aa = supersample(16, \"box\"))",
         left + 40.0 * pixel,
         3.0 * pixel,
     );
@@ -76,7 +82,7 @@ render(footprint = 0.01, ao = none(), integrator = path(), aa = supersample(16, 
     let renderer = CpuRenderer::new(None).unwrap();
     let (mut held, mut off, mut uneven) = (0, 0.0, 0);
     for seed in 0..SEEDS {
-        let picture = converged(&renderer, &scene, seed, 0.02);
+        let picture = converged(&renderer, &scene, &[Plane::Colour], seed, 0.02);
         uneven += u32::from(is_uneven(&picture));
         for i in 0..SIZE[0] * SIZE[1] {
             let (interval, right) = (
@@ -104,7 +110,7 @@ camera(eye = (0, 1, 3), target = (0, 0.4, 0))\nrender(integrator = path(3))";
     let scene = scene(text, [140, 70]);
     let [one, three] = [1, 3].map(|threads| {
         let renderer = CpuRenderer::new(Some(threads)).unwrap();
-        converged(&renderer, &scene, 7, 0.08)
+        converged(&renderer, &scene, &Plane::ALL, 7, 0.08)
     });
     assert_eq!(one.rounds(), three.rounds());
     assert!(one.rays() > 0 && one.rays() == three.rays());
@@ -119,7 +125,7 @@ fn uneven_samples_are_weighed() {
 render(integrator = path(2), aa = supersample(16, \"mitchell\"))";
     let scene = scene(text, [140, 40]);
     let renderer = CpuRenderer::new(Some(2)).unwrap();
-    let uneven = converged(&renderer, &scene, 1, 0.05);
+    let uneven = converged(&renderer, &scene, &Plane::ALL, 1, 0.05);
     let mut even = Progressive::new([140, 40], Filter::Mitchell, &Plane::ALL, 2, 0.0);
     let mut prepared = renderer.prepare(Arc::new(scene.clone())).unwrap();
     for _ in 0..uneven.rounds() {
