@@ -121,6 +121,15 @@ fn luminance([r, g, b]: [f32; 3]) -> f64 {
     0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)
 }
 
+/// The filter of a picture that converges: that of supersampling, and the default one where another antialiasing is stated.
+pub fn filter(antialias: Antialias) -> Filter {
+    if let Antialias::Supersample { filter, .. } = antialias {
+        filter
+    } else {
+        Filter::default()
+    }
+}
+
 /// Bytes that a picture that converges takes: two sets of sums, and what is known of its error.
 pub fn bytes(size: [u32; 2], planes: &[Plane]) -> u64 {
     let moments = u64::from(size[0]) * u64::from(size[1]) * size_of::<Moments>() as u64;

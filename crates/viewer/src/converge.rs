@@ -4,9 +4,8 @@ use crate::engine::{Look, Request};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use zeroset_scene::film::Plane;
-use zeroset_scene::progressive::Progressive;
+use zeroset_scene::progressive::{Progressive, filter};
 use zeroset_scene::render::{Evaluations, Observer, Prepared, RenderError};
-use zeroset_scene::settings::Antialias;
 
 /// A new picture is shown so often: developing one takes time that rays could have.
 pub(crate) const PAUSE: Duration = Duration::from_millis(400);
@@ -33,10 +32,7 @@ pub(crate) struct Converging {
 impl Converging {
     fn new(look: &Look, size: [u32; 2]) -> Converging {
         let settings = &look.settings;
-        let filter = match settings.antialias {
-            Antialias::Supersample { filter, .. } => filter,
-            Antialias::None => Default::default(),
-        };
+        let filter = filter(settings.antialias);
         let planes = &Plane::ALL;
         Converging {
             look: *look,

@@ -17,6 +17,7 @@ use zeroset_scene::accumulator::Accumulator;
 use zeroset_scene::camera::Camera;
 use zeroset_scene::fallback::Fallback;
 use zeroset_scene::film::{Film, Plane};
+use zeroset_scene::progressive;
 use zeroset_scene::render::{Evaluations, Observer, Prepared, RenderError, Renderer};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::Antialias::{self, Supersample};
@@ -698,10 +699,7 @@ impl Worker<'_> {
 /// What a picture that converges has by now.
 fn taken_of(converging: &converge::Converging, noise: f64) -> Take {
     let picture = &converging.picture;
-    let filter = match converging.look.settings.antialias {
-        Supersample { filter, .. } => filter,
-        Antialias::None => Default::default(),
-    };
+    let filter = progressive::filter(converging.look.settings.antialias);
     Take {
         look: converging.look,
         rung: Rung {

@@ -129,7 +129,7 @@ fn methods(args: &FitAoArgs, stated: Occlusion) -> Vec<Occlusion> {
     if let Some(chosen) = args.ao {
         return vec![chosen.0];
     }
-    let with = |name: &&str| match stated.method().name == **name {
+    let with = |name: &&str| match stated.method().name == *name {
         true => Some(stated),
         false => Occlusion::named(name),
     };

@@ -17,15 +17,13 @@ use zeroset_output::atomic::{probe, write_atomically};
 use zeroset_output::display;
 use zeroset_output::format::checkpoint::{self, CheckpointFailure, Difference, Identity};
 use zeroset_scene::film::Plane;
-use zeroset_scene::progressive::{Progressive, USUAL};
+use zeroset_scene::progressive::{Progressive, USUAL, filter};
 use zeroset_scene::render::{Frame, Observer, Prepared, RenderError, Statistics};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::Antialias;
 
 /// The most rays a pixel where `--spp` says nothing.
 const MOST_RAYS: u32 = 1 << 16;
-/// Parts of the bar.
-const PARTS: f64 = 1000.0;
 
 /// Whether the flags ask for a picture that converges.
 pub(crate) fn is_asked(args: &RenderArgs) -> bool {
@@ -46,7 +44,8 @@ impl Aim<'_> {
     fn of<'a>(args: &'a RenderArgs, scene: &Scene) -> Aim<'a> {
         let stated = match scene.settings().antialias {
             Antialias::Supersample { samples, .. } => samples,
-            Antialias::None => 1,
+            // what has one ray a pixel, or not rays alone
+            _ => 1,
         };
         Aim {
             noise: args.noise,
@@ -117,10 +116,7 @@ pub(crate) fn render(
 ) -> Result<Converged, Failure> {
     let began = Instant::now();
     let (aim, settings) = (Aim::of(args, scene), scene.settings());
-    let filter = match settings.antialias {
-        Antialias::Supersample { filter, .. } => filter,
-        Antialias::None => Default::default(),
-    };
+    let filter = filter(settings.antialias);
     let mut picture = Progressive::new(
         settings.size,
         filter,
@@ -144,7 +140,6 @@ pub(crate) fn render(
     let mut statistics = Statistics::default();
     let (mut kept, mut kept_at) = (picture.rounds(), Instant::now());
     let mut lack = None;
-    progress.bar.set_length(PARTS as u64);
     while !aim.is_reached(&picture) {
         let prepared: &mut dyn Prepared = prepared.as_mut();
         match picture.advance(prepared, scene.camera(), aim.noise, &watching) {
@@ -169,9 +164,12 @@ pub(crate) fn render(
             }
             Err(error) => return Err(error.into()),
         }
+        // as many rays as it will take, as far as that is known
+        let share = aim.share(&picture).max(1e-6);
         progress
             .bar
-            .set_position((PARTS * aim.share(&picture)) as u64);
+            .set_length((picture.rays() as f64 / share) as u64);
+        progress.bar.set_position(picture.rays());
         if let Some(path) = aim.checkpoint
             && kept_at.elapsed() >= aim.every
         {
