@@ -208,7 +208,8 @@ fn made(params: &[&Param], with: &Occlusion, at: &[f64]) -> Occlusion {
             true => x.exp(),
             false => x * x,
         };
-        let x = x.clamp(param.allowed.min.max(1e-6), param.allowed.max);
+        let least = if param.is_logarithmic { 1e-6 } else { 0.0 };
+        let x = x.clamp(param.allowed.min.max(least), param.allowed.max);
         let digits = (3.0 - x.log10().floor()).clamp(0.0, 8.0);
         let rounded = format!("{x:.0$}", digits as usize).parse().unwrap_or(x);
         method.put(param.name, Value::Real(rounded as f32));

@@ -4,7 +4,8 @@ use crate::run::Folder;
 use std::time::{Duration, Instant};
 
 const SCENE: &str =
-    "show(sphere(0.8))\nshow(plane().move(y = -0.8))\nrender(integrator = path(3))\n";
+    "show(sphere(0.8))\nshow(plane().move(y = -0.8))\ncamera(eye = (2, 1.5, 3), target = (0, 0, 0))
+render(integrator = path(3))\n";
 
 #[test]
 fn a_picture_ends_when_there_is_little_noise() {
@@ -91,7 +92,7 @@ fn other_checkpoints_are_refused() {
         &format!("render other.star {asked}"),
         &["another picture", "what the scene shows"],
     );
-    folder.write("moved.star", format!("{SCENE}camera(eye = (0, 0, 5))\n"));
+    folder.write("moved.star", SCENE.replace("(2, 1.5, 3)", "(2, 1.5, 5)"));
     bad(
         &format!("render moved.star {asked}"),
         &["its camera differs", "eye"],

@@ -53,6 +53,7 @@ fn fitted_numbers_are_nearer() {
         "{text}"
     );
     assert!(folder.names().contains(&"sheet.png".to_owned()));
-    folder.write("empty.star", "camera(eye = (0, 0, 3))\n");
+    let away = "show(sphere(1))\ncamera(eye = (0, 0, 3), target = (0, 0, 9))\n";
+    folder.write("empty.star", away);
     folder.bad("fit-ao empty.star", 3, &["nothing that could be occluded"]);
 }
