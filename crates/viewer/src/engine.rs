@@ -563,7 +563,11 @@ impl Worker<'_> {
             let is_finer = all.iter().all(|c| c.picture.samples() >= f64::from(ladder));
             if is_done || (is_finer && shown.elapsed() >= converge::PAUSE) {
                 let films: Vec<Take> = all.iter().map(|c| taken_of(c, noise)).collect();
-                for take in &films {
+                let is_kept = |take: &&Take| {
+                    // what has one ray a pixel is shown so once it does not converge any more
+                    matches!(take.look.settings.antialias, Supersample { .. })
+                };
+                for take in films.iter().filter(is_kept) {
                     self.kept.keep(take, request.size);
                 }
                 self.show(request, &films, is_done);
