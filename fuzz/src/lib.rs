@@ -8,10 +8,12 @@ use std::time::{Duration, Instant};
 use zeroset_language::json::{expand, to_text};
 use zeroset_language::limits::Limits;
 use zeroset_language::load::{Language, Options, load_text};
+use zeroset_output::format::checkpoint::{Identity, read, write};
 use zeroset_scene::film::Plane;
+use zeroset_scene::progressive::Progressive;
 use zeroset_scene::render::{Observer, RenderError, Renderer};
 use zeroset_scene::scene::Scene;
-use zeroset_scene::settings::{Antialias, Integrator, Occlusion};
+use zeroset_scene::settings::{Antialias, Filter, Integrator, Occlusion};
 use zeroset_trace::CpuRenderer;
 
 /// Loads a text, and what it wrote of it as JSON. `None` where it is refused.
@@ -139,4 +141,38 @@ pub fn render(mut scene: Scene) {
             "{plane:?} differs from run to run"
         );
     }
+}
+
+/// Reads bytes as a checkpoint of a small picture: as they are, and as what stands behind check sums that are right. What is accepted can
+/// be shown, planned with, and written and read again.
+///
+/// # Panics
+/// Something broke that must not.
+pub fn checkpoint(bytes: &[u8]) {
+    let identity = Identity::default().with("size", "2x2").with("scene", "a");
+    let fresh = || Progressive::new([2, 2], Filter::Tent, &[Plane::Colour], 1, 0.0);
+    let look = |bytes: &[u8]| {
+        let mut picture = fresh();
+        if read(bytes, &identity, &mut picture).is_err() {
+            assert_eq!((picture.rounds(), picture.rays()), (0, 0));
+            return;
+        }
+        let map = picture.plan(Some(0.01));
+        assert!(map.most() >= 1 && picture.film().has(Plane::Colour));
+        let mut again = Vec::new();
+        write(&mut again, &identity, &picture).expect("memory");
+        read(&again[..], &identity, &mut fresh()).expect("what was read can be read");
+    };
+    look(bytes);
+    let mut whole = Vec::new();
+    write(&mut whole, &identity, &fresh()).expect("memory");
+    // the check sum of the second part, and where that begins
+    let head = 16 + "size 2x2\nscene a\n".len() + 4;
+    let end = whole.len() - 4;
+    for (to, from) in whole[head..end].iter_mut().zip(bytes) {
+        *to = *from;
+    }
+    let sum = crc32fast::hash(&whole[head..end]);
+    whole[end..].copy_from_slice(&sum.to_le_bytes());
+    look(&whole);
 }

@@ -166,6 +166,11 @@ impl Prepared for PreparedScene {
         let job = self.job.seen(camera, into.size(), into.antialias());
         Ok(self.renderer.sample(&job, samples, into, observer)?)
     }
+
+    fn reseed(&mut self, seed: u32) -> Result<(), RenderError> {
+        self.job.frame.seed = seed;
+        Ok(())
+    }
 }
 
 /// All adapters, the best first, and the number of the one that [`Choice::Auto`] takes.

@@ -186,6 +186,28 @@ impl Accumulator {
             .map(|(sum, numbers)| (sum, numbers.as_mut_slice()))
     }
 
+    /// The numbers of a sum, channels interleaved; empty if it is not kept.
+    pub fn sum(&self, sum: Sum) -> &[f32] {
+        &self.sums[sum as usize]
+    }
+
+    /// Adds the samples of sums of the same size, filter and planes.
+    pub fn add(&mut self, other: &Accumulator) {
+        let numbers: Vec<f32> = other.sums.iter().flatten().copied().collect();
+        self.add_rows(0, self.size[1], &numbers);
+        self.samples += other.samples;
+    }
+
+    /// All samples count so many times.
+    pub fn weigh(&mut self, times: u32) {
+        self.samples *= times;
+        for (sum, numbers) in Sum::ALL.into_iter().zip(&mut self.sums) {
+            if !matches!(sum, Sum::Depth | Sum::Residual | Sum::Object) {
+                numbers.iter_mut().for_each(|x| *x *= times as f32);
+            }
+        }
+    }
+
     /// Every pixel has as many more samples.
     pub fn count(&mut self, samples: u32) {
         self.samples += samples;

@@ -2,8 +2,10 @@
 
 use crate::accumulator::Accumulator;
 use crate::camera::Camera;
+use crate::progressive::SampleMap;
 use crate::render::{Observer, Prepared, RenderError, Renderer, Statistics};
 use crate::scene::Scene;
+use crate::settings::Settings;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
@@ -153,6 +155,40 @@ impl Prepared for Standing {
                 // what the accumulator holds is of a device that failed: all of it is sampled anew
                 into.clear();
                 self.prepared.sample(camera, 0..samples.end, into, observer)
+            }
+            result => result,
+        }
+    }
+
+    fn reseed(&mut self, seed: u32) -> Result<(), RenderError> {
+        // so that a renderer that stands in has it too
+        let settings = Settings {
+            seed,
+            ..*self.scene.settings()
+        };
+        self.scene = Arc::new(Scene::clone(&self.scene).with_settings(settings)?);
+        match self.prepared.reseed(seed) {
+            Err(error @ RenderError::Device { .. }) if self.is_first => self.fall_back(&error),
+            result => result,
+        }
+    }
+
+    fn is_adaptive(&self) -> bool {
+        self.prepared.is_adaptive()
+    }
+
+    fn sample_where(
+        &mut self,
+        camera: &Camera,
+        map: &SampleMap,
+        into: &mut Accumulator,
+        observer: &dyn Observer,
+    ) -> Result<Statistics, RenderError> {
+        match self.prepared.sample_where(camera, map, into, observer) {
+            Err(error @ RenderError::Device { .. }) if self.is_first => {
+                self.fall_back(&error)?;
+                into.clear();
+                self.prepared.sample_where(camera, map, into, observer)
             }
             result => result,
         }

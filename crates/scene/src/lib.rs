@@ -45,6 +45,7 @@ pub mod film;
 pub mod light;
 pub mod material;
 pub mod methods;
+pub mod progressive;
 pub mod render;
 pub mod scene;
 pub mod settings;

@@ -3,6 +3,7 @@
 use crate::accumulator::Accumulator;
 use crate::camera::Camera;
 use crate::film::{Film, Plane};
+use crate::progressive::{MOST, SampleMap};
 use crate::scene::Scene;
 use std::ops::Range;
 use std::sync::Arc;
@@ -71,6 +72,35 @@ pub trait Prepared: Send {
         into: &mut Accumulator,
         observer: &dyn Observer,
     ) -> Result<Statistics, RenderError>;
+
+    /// Takes another [`Settings::seed`](crate::settings::Settings::seed), and keeps everything else.
+    ///
+    /// # Errors
+    /// See [`RenderError`].
+    fn reseed(&mut self, seed: u32) -> Result<(), RenderError>;
+
+    /// Whether [`Prepared::sample_where`] can give places different numbers of samples.
+    fn is_adaptive(&self) -> bool {
+        false
+    }
+
+    /// Gives an accumulator without samples those that a map says: at each place the first ones, as many as there are for it, which together
+    /// count as [`MOST`] do. A renderer that is not adaptive gives all places as many as the place that has the most: a power of two.
+    ///
+    /// # Errors
+    /// As [`Prepared::sample`].
+    fn sample_where(
+        &mut self,
+        camera: &Camera,
+        map: &SampleMap,
+        into: &mut Accumulator,
+        observer: &dyn Observer,
+    ) -> Result<Statistics, RenderError> {
+        let count = map.most().max(1);
+        let statistics = self.sample(camera, 0..count, into, observer)?;
+        into.weigh(MOST / count);
+        Ok(statistics)
+    }
 }
 
 /// A finished picture and what it took.

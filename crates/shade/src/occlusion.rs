@@ -92,6 +92,8 @@ pub const NARROW: f32 = 2.0;
 pub const EMPTY: f32 = 0.999_998;
 /// With all cones open their sum is 1 up to rounding: this makes up for it.
 pub const WHOLE: f32 = 1.000_002;
+/// What a sum of cones lacks on average, over itself and what is left to 1: the coefficients of a square polynomial. See [`open`].
+pub const LACK: [f32; 3] = [0.501, -2.591, 2.719];
 /// How much the normal counts among the directions that the sky is seen in: it decides where nothing is open.
 pub const NORMAL_SHARE: f32 = 1e-3;
 
@@ -174,7 +176,39 @@ pub fn share<R: Real>(clear: R, behind: R, per_width: R::Scalar, weight: R::Scal
     seen(before + behind * close) * weight
 }
 
+/// The openness from the `sum` of what all cones see.
+///
+/// Wide cones blur the horizon: what is nearly closed looks darker than it is, what is half open lighter, and what is nearly open darker
+/// again, by up to 0.06 and much alike everywhere. So a polynomial that leaves 0 and 1 as they are, and rises, gives back what the sum
+/// lacks on average. It was fitted to rays ([`LACK`]; least squares, each scene counting the same) over 66 random scenes: 36 of solids
+/// turned and joined in the air, with floors, walls or none, and 30 of solids that stand on floors. The scenes of the papers are not among
+/// them; on these it takes a fifth of the error away (docs/occlusion.md).
+#[inline(always)]
+pub fn open<R: Real>(sum: R) -> R {
+    let x = (sum * WHOLE).min(1.0);
+    let lack = (x * LACK[2] + LACK[1]) * x + LACK[0];
+    x + x * x.one_minus() * lack
+}
+
 /// What one cone of a ring adds where it is wholly open, so that all of them make 1.
 pub fn weights() -> [f32; 2] {
     [0, 1].map(|r| SHARES[r] / seen(EXTENT / WIDTH[r]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is closed stays closed, what is open open, and more light is never less.
+    #[test]
+    fn openness_rises_from_nothing_to_all() {
+        assert_eq!(open(0.0f32), 0.0);
+        assert_eq!(open(1.0 / WHOLE + 1e-6), 1.0);
+        let mut before = 0.0f32;
+        for i in 1..=1000 {
+            let now = open(i as f32 / 1000.0);
+            assert!(now > before && now <= 1.0, "{i}: {before}, {now}");
+            before = now;
+        }
+    }
 }

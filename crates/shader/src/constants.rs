@@ -93,7 +93,6 @@ fn constants() -> Vec<(&'static str, Value)> {
         ("CONE_START", Number(occlusion::START)),
         ("CONE_FREE", Number(occlusion::FREE)),
         ("CONE_MORE", Whole(skin::MORE)),
-        ("CONE_WHOLE", Number(occlusion::WHOLE)),
         ("CONE_NORMAL_SHARE", Number(occlusion::NORMAL_SHARE)),
         ("BALL_GROWTH", Number(occlusion::GROWTH)),
         ("BALL_NARROW", Number(occlusion::NARROW)),

@@ -259,6 +259,7 @@ formulas! {
     fn cone_left(clear: Number, apart: Number) = occlusion::left(clear, apart);
     fn cone_share(clear: Number, behind: Number, per_width: Number, weight: Number) =
         occlusion::share(clear, behind, per_width, weight);
+    fn cone_open(sum: Number) = occlusion::open(sum);
 
     // tone curves
     fn srgb@Soft(linear: Vec3) = tone::view(Tone::Soft, linear).map(tone::encode);

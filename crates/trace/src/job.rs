@@ -21,6 +21,7 @@ use zeroset_scene::accumulator::{Accumulator, Sum};
 use zeroset_scene::camera::Camera;
 use zeroset_scene::film::Plane;
 use zeroset_scene::material::Material;
+use zeroset_scene::progressive::{MOST, SampleMap};
 use zeroset_scene::settings::{self, Antialias, Filter};
 use zeroset_shade::air::behind;
 use zeroset_shade::light::discs;
@@ -39,6 +40,8 @@ pub(crate) struct Job<'a> {
     layers: Option<u32>,
     /// Those that are taken now.
     taken: Range<u32>,
+    /// How many of them in each tile, where that differs.
+    map: Option<&'a SampleMap>,
     plan: Plan,
     /// Whether the marks of hits differ and are needed.
     marks: bool,
@@ -67,6 +70,7 @@ impl<'a> Job<'a> {
                 Antialias::None | Antialias::Supersample { .. } => None,
             },
             taken,
+            map: None,
             plan: Plan {
                 march: settings.march,
                 select: settings.hit_selection,
@@ -89,19 +93,29 @@ impl<'a> Job<'a> {
         self.samples.map_or(1, |(n, _)| n)
     }
 
-    /// Samples a pixel that are taken now.
-    pub(crate) fn taken(&self) -> u32 {
-        self.taken.len() as u32
+    /// With the first samples only, as many as there are for each tile, which count together as [`MOST`] do.
+    pub(crate) fn spread(self, map: &'a SampleMap) -> Job<'a> {
+        Job {
+            map: Some(map),
+            ..self
+        }
+    }
+
+    /// Rays from the eye that are taken now.
+    pub(crate) fn rays(&self, size: [u32; 2]) -> u64 {
+        let even = || u64::from(size[0]) * u64::from(size[1]) * self.taken.len() as u64;
+        self.map.map_or_else(even, SampleMap::rays)
     }
 
     pub(crate) fn wants(&self, plane: Plane) -> bool {
         self.wanted[plane as usize]
     }
 
-    /// Renders a tile into the scratch memory; where samples are filtered, their colours into `sums`.
+    /// Renders tile number `k` into the scratch memory; where samples are filtered, their colours into `sums`.
     pub(crate) fn tile<S: Simd>(
         &self,
         s: S,
+        k: usize,
         area: &Area,
         sums: &mut [f32],
         q: &mut Scratch,
@@ -119,7 +133,11 @@ impl<'a> Job<'a> {
         q.planes.clear();
         q.shared.clear();
         let mut hits = 0;
-        for index in self.taken.clone() {
+        let taken = match self.map {
+            Some(map) => 0..map.count(k),
+            None => self.taken.clone(),
+        };
+        for index in taken.clone() {
             if stop.is_set() {
                 break;
             }
@@ -133,7 +151,12 @@ impl<'a> Job<'a> {
                 resolve::splat_samples(s, filter, area, &q.planes, sums);
             }
         }
-        let rays = (area.width * area.height) as u64 * u64::from(self.taken());
+        if self.map.is_some() {
+            let times = MOST as f32 / taken.len() as f32;
+            sums.iter_mut().for_each(|x| *x *= times);
+            q.planes.weigh(times);
+        }
+        let rays = (area.width * area.height) as u64 * taken.len() as u64;
         Done {
             rays,
             hits,

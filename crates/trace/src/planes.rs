@@ -98,6 +98,20 @@ impl Planes {
         }
     }
 
+    /// All samples count so many times.
+    pub(crate) fn weigh(&mut self, times: f32) {
+        let vectors = self.normal.iter_mut().chain(&mut self.albedo);
+        let sums = [
+            &mut self.hits,
+            &mut self.occlusion,
+            &mut self.shadow,
+            &mut self.steps,
+        ];
+        for sheet in vectors.chain(sums) {
+            sheet.iter_mut().for_each(|x| *x *= times);
+        }
+    }
+
     /// Which pixels of the row that begins at `at` were hit nearer than these depths.
     pub(crate) fn nearer(&self, at: usize, depths: &[f32]) -> [bool; WIDTH] {
         let mut nearer = [false; WIDTH];

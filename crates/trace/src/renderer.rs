@@ -22,9 +22,10 @@ use zeroset_scene::accumulator::{self, Accumulator, Sum};
 use zeroset_scene::camera::Camera;
 use zeroset_scene::film::{Film, Plane, SUMS};
 use zeroset_scene::material::Pattern;
+use zeroset_scene::progressive::{MOST, SampleMap};
 use zeroset_scene::render::{Evaluations, Observer, Prepared, RenderError, Renderer, Statistics};
 use zeroset_scene::scene::Scene;
-use zeroset_scene::settings::{Antialias, Occlusion};
+use zeroset_scene::settings::{Antialias, Occlusion, Settings};
 use zeroset_shade::air::Air;
 use zeroset_shade::skin::has_skins;
 use zeroset_shade::surface::BLURRED;
@@ -265,12 +266,19 @@ impl PreparedScene {
         into: &mut Accumulator,
         observer: &dyn Observer,
     ) -> Part {
+        let count = samples.len() as u32;
+        let part = self.run(Job::new(self, camera, samples, into), into, observer);
+        into.count(count);
+        part
+    }
+
+    fn run(&self, job: Job<'_>, into: &mut Accumulator, observer: &dyn Observer) -> Part {
         let began = Instant::now();
         let size = into.size();
         let run = Rendering {
             picture: self,
             size,
-            job: Job::new(self, camera, samples.clone(), into),
+            job,
             level: self.renderer.level,
             observer,
             cancelled: AtomicBool::new(false),
@@ -278,7 +286,6 @@ impl PreparedScene {
             finished: Mutex::default(),
         };
         let done = self.renderer.pool.install(|| run.all(into));
-        into.count(samples.len() as u32);
         let finished = run.finished.into_inner();
         let mut finished = finished.unwrap_or_else(PoisonError::into_inner);
         finished.sort_unstable();
@@ -325,6 +332,36 @@ impl Prepared for PreparedScene {
         observer: &dyn Observer,
     ) -> Result<Statistics, RenderError> {
         let part = self.sample_part(camera, samples, into, observer);
+        if part.is_whole {
+            Ok(part.statistics)
+        } else {
+            Err(RenderError::Cancelled)
+        }
+    }
+
+    fn reseed(&mut self, seed: u32) -> Result<(), RenderError> {
+        let settings = Settings {
+            seed,
+            ..*self.scene.settings()
+        };
+        self.scene = Arc::new(Scene::clone(&self.scene).with_settings(settings)?);
+        Ok(())
+    }
+
+    fn is_adaptive(&self) -> bool {
+        true
+    }
+
+    fn sample_where(
+        &mut self,
+        camera: &Camera,
+        map: &SampleMap,
+        into: &mut Accumulator,
+        observer: &dyn Observer,
+    ) -> Result<Statistics, RenderError> {
+        let job = Job::new(self, camera, 0..map.most(), into).spread(map);
+        let part = self.run(job, into, observer);
+        into.count(MOST);
         if part.is_whole {
             Ok(part.statistics)
         } else {
@@ -420,7 +457,7 @@ impl Rendering<'_> {
         }
         let area = Area::of(k, self.size);
         let mut q = self.picture.scratch();
-        let done = at_level!(self.level, s => self.job.tile(s, &area, sums, &mut q, &stop));
+        let done = at_level!(self.level, s => self.job.tile(s, k, &area, sums, &mut q, &stop));
         if stop.is_set() {
             // another thread may have set it after the last sample: then the tile is lost, which does no harm
             return Done {
@@ -437,7 +474,7 @@ impl Rendering<'_> {
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .push(k);
-        let total = u64::from(self.size[0]) * u64::from(self.size[1]) * u64::from(self.job.taken());
+        let total = self.job.rays(self.size);
         self.observer.advance(done.rays, total);
         done
     }

@@ -15,6 +15,7 @@ use fearless_simd::Simd;
 use zeroset_eval::Workspace;
 use zeroset_field::program::Program;
 use zeroset_number::{Lanes, Real, Vec3, v3};
+use zeroset_scene::progressive::CELL;
 use zeroset_scene::render::Evaluations;
 use zeroset_shade::view::{Region, View};
 
@@ -22,6 +23,9 @@ use zeroset_shade::view::{Region, View};
 pub(crate) const WIDTH: usize = 64;
 /// Pixels of a tile from top to bottom.
 pub(crate) const HEIGHT: usize = 32;
+/// Samples are spread over tiles.
+const _: () = assert!(WIDTH as u32 == CELL[0] && HEIGHT as u32 == CELL[1]);
+
 /// What a tile covers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Area {

@@ -211,6 +211,8 @@ impl App {
         set_comparison(&mut self.session, on);
         ui.toggle_value(&mut self.session.is_sliced, "Slice")
             .on_hover_text("A plane through the field (X).");
+        ui.toggle_value(&mut self.session.converge, "Converge")
+            .on_hover_text("Goes on until there is little noise (N).");
         let save = ui
             .button("Save…")
             .on_hover_text("Saves the picture (Ctrl+S).");
@@ -332,6 +334,9 @@ impl App {
         }
         if pressed(none, Key::X) {
             session.is_sliced = !session.is_sliced;
+        }
+        if pressed(none, Key::N) {
+            session.converge = !session.converge;
         }
         if pressed(none, Key::V) {
             let plane = &mut session.edited().plane;

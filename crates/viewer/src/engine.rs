@@ -1,5 +1,6 @@
 //! The thread that renders: it takes the newest request, climbs the ladder, and never keeps the window waiting.
 
+use crate::converge::{self, Convergence};
 use crate::develop::develop;
 use crate::ladder::{self, Rung, rungs};
 use crate::slice::{Cut, Slice};
@@ -16,6 +17,7 @@ use zeroset_scene::accumulator::Accumulator;
 use zeroset_scene::camera::Camera;
 use zeroset_scene::fallback::Fallback;
 use zeroset_scene::film::{Film, Plane};
+use zeroset_scene::progressive;
 use zeroset_scene::render::{Evaluations, Observer, Prepared, RenderError, Renderer};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::Antialias::{self, Supersample};
@@ -54,7 +56,7 @@ pub struct Look {
 
 impl Look {
     /// Whether both take the same rays: what differs is only how they are shown.
-    fn has_rays_of(&self, other: &Look) -> bool {
+    pub(crate) fn has_rays_of(&self, other: &Look) -> bool {
         let plain = |look: &Look| Look {
             settings: Settings {
                 exposure: 0.0,
@@ -81,6 +83,8 @@ pub struct Request {
     pub looks: Vec<Look>,
     /// Whether to go on to 64 rays a pixel.
     pub refine: bool,
+    /// Whether to go on then until 95 % intervals are so narrow, as a share of white.
+    pub converge: Option<f64>,
     /// A section through the field.
     pub slice: Option<Slice>,
     /// How often the file was saved before: a picture of another edition is of no use to anybody.
@@ -91,14 +95,14 @@ impl PartialEq for Request {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.scene, &other.scene)
             && (self.camera, self.size, self.refine) == (other.camera, other.size, other.refine)
-            && self.looks == other.looks
+            && (&self.looks, self.converge) == (&other.looks, other.converge)
             && self.slice == other.slice
     }
 }
 
 impl Request {
     /// Whether both look at the same from the same place.
-    fn sees_as(&self, other: &Request) -> bool {
+    pub(crate) fn sees_as(&self, other: &Request) -> bool {
         Arc::ptr_eq(&self.scene, &other.scene)
             && (self.camera, self.size) == (other.camera, other.size)
     }
@@ -133,6 +137,8 @@ pub struct Exposed {
     pub rays: u64,
     /// Evaluations of the field.
     pub evaluations: Evaluations,
+    /// How near it is to what it converges to, where it does.
+    pub convergence: Option<Convergence>,
 }
 
 /// A picture of the ladder that is done.
@@ -293,6 +299,7 @@ struct Take {
     seconds: f64,
     rays: u64,
     evaluations: Evaluations,
+    convergence: Option<Convergence>,
 }
 
 impl Take {
@@ -368,6 +375,7 @@ struct Worker<'a> {
     ready: Vec<Ready>,
     rate: Option<f64>,
     kept: Kept,
+    converging: converge::Kept,
     cut: Cut,
 }
 
@@ -411,6 +419,7 @@ impl Worker<'_> {
             ready: Vec::new(),
             rate: None,
             kept: Kept::default(),
+            converging: converge::Kept::default(),
             cut: Cut::default(),
         };
         worker.serve();
@@ -452,6 +461,7 @@ impl Worker<'_> {
             }
             if self.fell_back.swap(false, Ordering::Relaxed) {
                 (self.rate, self.kept, self.cut) = (None, Kept::default(), Cut::default());
+                self.converging.clear();
             }
         }
     }
@@ -498,9 +508,75 @@ impl Worker<'_> {
                 began: Instant::now(),
             };
             let films = self.render(&request, &rung, wanted, &mut sums, &observer)?;
-            self.show(&request, &films, i == count);
+            let is_last = i == count && request.converge.is_none();
+            self.show(&request, &films, is_last);
         }
-        Ok(())
+        match request.converge {
+            Some(noise) => self.converge(&request, noise, wanted, number),
+            None => {
+                self.converging.clear();
+                Ok(())
+            }
+        }
+    }
+
+    /// Goes on until there is little noise, and shows the picture from time to time, once it has as many samples as the ladder's last.
+    fn converge(
+        &mut self,
+        request: &Arc<Request>,
+        noise: f64,
+        ladder: u32,
+        number: u64,
+    ) -> Result<(), RenderError> {
+        let observer = Impatient {
+            shared: self.shared,
+            request,
+            number,
+            is_first: false,
+            began: Instant::now(),
+        };
+        let mut kept = std::mem::take(&mut self.converging);
+        kept.turn_to(request);
+        let taken = self.rounds(request, noise, ladder, &mut kept, &observer);
+        self.converging = kept;
+        taken
+    }
+
+    fn rounds(
+        &mut self,
+        request: &Arc<Request>,
+        noise: f64,
+        ladder: u32,
+        kept: &mut converge::Kept,
+        observer: &dyn Observer,
+    ) -> Result<(), RenderError> {
+        let mut shown = Instant::now();
+        loop {
+            for (side, converging) in kept.pictures.iter_mut().enumerate() {
+                if !converging.is_done(noise) {
+                    let prepared = self.prepared(request, side)?.as_mut();
+                    converging.advance(prepared, request, noise, observer)?;
+                }
+            }
+            let all = &kept.pictures;
+            let is_done = all.iter().all(|c| c.is_done(noise));
+            let is_finer = all.iter().all(|c| c.picture.samples() >= f64::from(ladder));
+            if is_done || (is_finer && shown.elapsed() >= converge::PAUSE) {
+                let films: Vec<Take> = all.iter().map(|c| taken_of(c, noise)).collect();
+                let is_kept = |take: &&Take| {
+                    // what has one ray a pixel is shown so once it does not converge any more
+                    matches!(take.look.settings.antialias, Supersample { .. })
+                };
+                for take in films.iter().filter(is_kept) {
+                    self.kept.keep(take, request.size);
+                }
+                self.show(request, &films, is_done);
+                shown = Instant::now();
+            }
+            if is_done {
+                return Ok(());
+            }
+        }
     }
 
     /// The scene of a look, ready to be rendered: what was ready for another camera or size is ready for this one too, and of
@@ -576,6 +652,7 @@ impl Worker<'_> {
                 seconds: began.elapsed().as_secs_f64(),
                 rays: statistics.rays,
                 evaluations: statistics.evaluations,
+                convergence: None,
             };
             if own.samples() == 1 {
                 self.rate = ladder::measured(self.rate, take.rays, take.seconds);
@@ -611,6 +688,7 @@ impl Worker<'_> {
                 seconds: take.seconds,
                 rays: take.rays,
                 evaluations: take.evaluations,
+                convergence: take.convergence,
                 key,
             });
         }
@@ -619,6 +697,27 @@ impl Worker<'_> {
             sides,
             is_last,
         })));
+    }
+}
+
+/// What a picture that converges has by now.
+fn taken_of(converging: &converge::Converging, noise: f64) -> Take {
+    let picture = &converging.picture;
+    let filter = progressive::filter(converging.look.settings.antialias);
+    Take {
+        look: converging.look,
+        rung: Rung {
+            size: picture.size(),
+            antialias: Supersample {
+                samples: picture.samples().round() as u32,
+                filter,
+            },
+        },
+        film: Arc::new(picture.film()),
+        seconds: converging.seconds,
+        rays: picture.rays(),
+        evaluations: converging.evaluations,
+        convergence: Some(converging.convergence(noise)),
     }
 }
 

@@ -27,6 +27,7 @@ fn request(text: &str, size: [u32; 2]) -> Request {
         size,
         looks: vec![look],
         refine: false,
+        converge: None,
         slice: None,
         scene,
     }
@@ -104,6 +105,10 @@ impl<T: Test> Prepared for Tested<T> {
         let statistics = self.0.sample(&self.1, into, observer)?;
         into.count(samples.len() as u32);
         Ok(statistics)
+    }
+
+    fn reseed(&mut self, _: u32) -> Result<(), RenderError> {
+        Ok(())
     }
 }
 
@@ -411,4 +416,36 @@ fn a_renderer_that_breaks_down_takes_nothing_along() {
         assert_eq!(last(&engine).request.scene.objects()[0].name, "good");
         assert!(engine.is_alive());
     }
+}
+
+/// A picture that converges ends where there is little noise, goes on from what it has when only the view changes, and its renderer
+/// makes the same pictures as before.
+#[test]
+fn pictures_converge_in_place() {
+    let engine = Engine::start(Box::new(|| cpu(Some(2))), || {}).unwrap();
+    engine.wait(PATIENCE);
+    let mut wanted = request(BALL, [48, 32]);
+    engine.ask(wanted.clone());
+    let before = last(&engine);
+    wanted.converge = Some(0.05);
+    engine.ask(wanted.clone());
+    let shown = last(&engine);
+    let side = &shown.sides[0];
+    let convergence = side.convergence.unwrap();
+    assert!(convergence.noise.unwrap() <= 0.05 && convergence.left == Some(0.0));
+    assert!(side.rung.samples() >= 64 && side.rays > 0);
+    // another plane of it is there at once
+    wanted.looks[0].plane = Plane::Normal;
+    engine.ask(wanted.clone());
+    let again = last(&engine);
+    assert_eq!(again.sides[0].rays, side.rays);
+    assert!(again.sides[0].film == side.film);
+    // what was taken for it left no trace
+    wanted.converge = None;
+    wanted.camera.eye.x += 0.1;
+    engine.ask(wanted.clone());
+    last(&engine);
+    wanted.camera = before.request.camera;
+    engine.ask(wanted);
+    assert!(last(&engine).sides[0].film == before.sides[0].film);
 }

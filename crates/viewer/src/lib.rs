@@ -8,6 +8,7 @@
 //! | [`rig`] | the camera and what a hand does to it |
 //! | [`ladder`] | which pictures are made, from a coarse one to a refined one |
 //! | [`engine`] | the thread that renders them |
+//! | [`converge`] | pictures that go on until there is little noise |
 //! | [`loader`] | the thread that loads the scene, and again on every save |
 //! | [`clock`] | the time of an animation |
 //! | [`slice`](mod@slice), [`pick`] | a plane through the field; what is under the cursor |
@@ -25,6 +26,7 @@
 
 pub mod app;
 pub mod clock;
+pub mod converge;
 mod develop;
 pub mod engine;
 pub mod ladder;

@@ -58,6 +58,10 @@ pub struct Session {
     pub comparison: SideBySide,
     /// Whether pictures go on to 64 rays a pixel while nothing changes.
     pub refine: bool,
+    /// Whether they go on then until there is little noise.
+    pub converge: bool,
+    /// How little: what 95 % intervals are wide, as a share of white.
+    pub noise: f64,
     /// The plane through the field, and whether it is shown.
     pub slice: Slice,
     /// Whether the plane is shown.
@@ -111,6 +115,8 @@ impl Session {
                 edited: 0,
             },
             refine: true,
+            converge: false,
+            noise: 0.01,
             slice: Slice { axis: 2, at: 0.0 },
             is_sliced: false,
             picked: None,
@@ -253,6 +259,7 @@ impl Session {
             size: size.map(|n| n.max(1)),
             looks: self.looks[..count].to_vec(),
             refine: self.refine,
+            converge: self.converge.then_some(self.noise),
             slice: self.is_sliced.then_some(self.slice),
         })
     }

@@ -247,6 +247,7 @@ mod tests {
             size: [200, 200],
             looks: vec![look],
             refine: false,
+            converge: None,
             slice: None,
             scene,
         };

@@ -76,8 +76,10 @@ pub(crate) enum Command {
     Fields(FieldsArgs),
     /// Draw a section through a scene's distance field, with lines of equal distance
     Slice(SliceArgs),
-    /// Say how different two pictures are: RMSE, PSNR, SSIM and FLIP
+    /// Say how different pictures are from another one: RMSE, PSNR, SSIM and FLIP
     Compare(CompareArgs),
+    /// Say how near each occlusion method is to sampled occlusion in a scene, and with which numbers it is nearest
+    FitAo(FitAoArgs),
     /// Measure how fast this machine is
     Bench(BenchArgs),
     /// List the GPUs of this machine, what they can do, and which one renders
@@ -160,6 +162,20 @@ pub(crate) struct RenderArgs {
     /// share is finished is said on standard error, and the exit code is 5
     #[arg(long, value_name = "SECONDS", value_parser = crate::values::positive)]
     pub time_limit: Option<f64>,
+    /// Render until 95 % intervals are so narrow: of every 100 pixels of each 64x32, 95 are then that near to what they converge to, as a
+    /// share of white on a screen (0.01 is hardly seen). Rays go where the error is. --spp is the most a pixel has on average (65536)
+    #[arg(long, value_name = "SHARE", value_parser = crate::values::positive, help_heading = "Convergence")]
+    pub noise: Option<f64>,
+    /// Keep all rays in this file, every minute, at the end and when Ctrl-C or --time-limit ends the picture
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with_all = ["frames", "watch"], help_heading = "Convergence")]
+    pub checkpoint: Option<PathBuf>,
+    /// Go on from the file of --checkpoint: to the same picture, bit for bit, as if nothing had ended it. With more --spp or less --noise
+    /// it goes on from a finished one
+    #[arg(long, requires = "checkpoint", help_heading = "Convergence")]
+    pub resume: bool,
+    /// Seconds between two checkpoints
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = crate::values::positive, requires = "checkpoint", help_heading = "Convergence")]
+    pub checkpoint_every: f64,
     /// Render again whenever a file that the scene loads is saved, until Ctrl-C
     #[arg(long)]
     pub watch: bool,
@@ -340,15 +356,38 @@ pub(crate) struct CompareArgs {
     /// The reference: PNG or OpenEXR
     #[arg(value_name = "A", value_hint = ValueHint::FilePath)]
     pub reference: PathBuf,
-    /// What is compared with it
-    #[arg(value_name = "B", value_hint = ValueHint::FilePath)]
-    pub test: PathBuf,
+    /// What is compared with it; of several there is a table
+    #[arg(value_name = "B", required = true, value_hint = ValueHint::FilePath)]
+    pub tests: Vec<PathBuf>,
+    /// Print as JSON, a line for each
+    #[arg(long)]
+    pub json: bool,
+    /// Write the differences that are seen (FLIP) as a picture, of one B
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct FitAoArgs {
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    #[arg(long, value_name = "METHOD", help = help::<Occlusion>("The method to fit, and the numbers to begin with. Default: quilez, bent, evans and upward, as the scene states them"))]
+    pub ao: Option<Chosen<Occlusion>>,
+    /// Size of the pictures that are compared, pixels
+    #[arg(long, value_name = "WxH", default_value = "160x120")]
+    pub size: Size,
+    /// Rays a pixel of the reference, which is rendered twice
+    #[arg(long, value_name = "N", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(1..=65536))]
+    pub rays: u32,
+    /// Threads of the CPU. Default: all cores
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Write the reference and all methods beside each other as a PNG: as stated, fitted, and how far they are off
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
     /// Print as JSON
     #[arg(long)]
     pub json: bool,
-    /// Write the differences that are seen (FLIP) as a picture
-    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub output: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -11,7 +11,7 @@ use zeroset_gpu::{Choice, GpuRenderer};
 #[cfg(feature = "gpu")]
 use zeroset_scene::fallback::Fallback;
 use zeroset_scene::film::{Film, Plane};
-use zeroset_scene::render::{Frame, Observer, RenderError, Renderer, Statistics};
+use zeroset_scene::render::{Frame, Observer, Prepared, RenderError, Renderer, Statistics};
 use zeroset_scene::scene::Scene;
 use zeroset_trace::CpuRenderer;
 
@@ -181,6 +181,26 @@ impl ChosenRenderer {
             used: Used::Cpu,
             finished: (!part.is_whole).then_some(part.finished),
         }))
+    }
+
+    /// Makes a scene ready, and says what will render it.
+    pub(crate) fn prepare(&self, scene: &Scene) -> Result<(Box<dyn Prepared>, Used), RenderError> {
+        let scene = Arc::new(scene.clone());
+        #[cfg(feature = "gpu")]
+        if let Some(gpu) = self.gpu.as_ref().filter(|gpu| gpu.is_there()) {
+            let prepared = gpu.renderer.prepare(scene)?;
+            return Ok((prepared, self.used()));
+        }
+        Ok((self.cpu()?.prepare(scene)?, Used::Cpu))
+    }
+
+    /// What renders by now.
+    pub(crate) fn used(&self) -> Used {
+        #[cfg(feature = "gpu")]
+        if let Some(gpu) = self.gpu.as_ref().filter(|gpu| gpu.is_there()) {
+            return Used::Gpu(gpu.title.clone());
+        }
+        Used::Cpu
     }
 
     fn is_on_gpu(&self) -> bool {

@@ -8,12 +8,14 @@ mod console;
 mod estimate;
 mod failure;
 mod file;
+mod fit;
 mod interrupt;
 mod json;
 mod reference;
 mod render;
 mod report;
 mod scene;
+mod simplex;
 mod survey;
 mod values;
 
@@ -96,6 +98,7 @@ fn run(command: &Command, console: &Console) -> Result<(), Failure> {
         Command::Export(args) => command::export::run(args, console),
         Command::Slice(args) => command::slice::run(args, console),
         Command::Fields(args) => command::fields::run(args, console),
+        Command::FitAo(args) => command::fit_ao::run(args, console),
         Command::Compare(args) => command::compare::run(args, console),
         Command::Bench(args) => bench::run(args, console),
         #[cfg(feature = "gpu")]

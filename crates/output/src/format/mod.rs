@@ -2,6 +2,7 @@
 
 mod attributes;
 
+pub mod checkpoint;
 pub mod exr;
 pub mod png;
 pub mod read;

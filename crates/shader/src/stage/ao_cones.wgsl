@@ -124,5 +124,5 @@ fn ao_cones(at: Surface, how: Occluder) -> AmbientVisibility {
         open += share;
         bent += to[k] * share;
     }
-    return AmbientVisibility(min(open * CONE_WHOLE, 1.0), normalize(bent));
+    return AmbientVisibility(cone_open(open), normalize(bent));
 }

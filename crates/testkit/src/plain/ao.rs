@@ -139,7 +139,12 @@ impl Plain<'_> {
             open += share;
             bent += w * share;
         }
-        ((open * 1.000_002).min(1.0), bent.normalize_or(at.normal))
+        let open = (open * 1.000_002).min(1.0);
+        let lack = 0.501 - 2.591 * open + 2.719 * open * open;
+        (
+            open + open * (1.0 - open) * lack,
+            bent.normalize_or(at.normal),
+        )
     }
 }
 

@@ -15,7 +15,7 @@ use zeroset_number::{Lanes, Ops, Real, Vec3, v3};
 use zeroset_shade::march::rise;
 use zeroset_shade::occlusion::{
     BLOCKED, CARE, CONES, COSINES, EMPTY, FREE, FULL, GROWTH, NARROW, NORMAL_SHARE, START, SURE,
-    WHOLE, WIDTH, clear, directions, distances, left, ring, share, turn, weights,
+    WIDTH, clear, directions, distances, left, open as openness, ring, share, turn, weights,
 };
 use zeroset_shade::secondary::{SMOOTHING, STEEPEST, reach};
 use zeroset_shade::skin;
@@ -359,7 +359,7 @@ fn combine<S: Simd>(s: S, to: &[[f32; 3]; CONES], range: Range<usize>, q: &mut S
             open = open + share;
             bent = along(bent, turn(normal, v3(w[0], w[1], w[2])), share);
         }
-        store((open * WHOLE).min(1.0), &mut q.hits.open, i);
+        store(openness(open), &mut q.hits.open, i);
         // the normal decides where nothing is open
         store3(bent.normalize(), &mut q.hits.bent, i);
     }

@@ -24,6 +24,7 @@ pub const KEYS: &[(&str, &str)] = &[
     ),
     ("C", "compare two settings; the divider can be dragged"),
     ("X", "a plane through the field"),
+    ("N", "converge: go on until there is little noise"),
     ("V", "the next view: picture, steps, occlusion, ..."),
     ("Space", "play or pause"),
     (", and .", "a frame back or on"),

@@ -16,7 +16,7 @@ pub fn view(ui: &mut Ui, session: &mut Session) {
 /// Every method that the edited look can have.
 pub fn methods(ui: &mut Ui, session: &mut Session) {
     let stated = *session.stated();
-    let mut refine = session.refine;
+    let (mut refine, mut noise) = (session.refine, session.noise);
     let look = session.edited();
     section(ui, "Marching", true, |ui| {
         choose(ui, "March", &mut look.settings.march);
@@ -47,6 +47,9 @@ pub fn methods(ui: &mut Ui, session: &mut Session) {
         );
         let about = "Goes on to 64 rays a pixel while nothing changes.";
         switch(ui, "Refine at rest", about, &mut refine);
+        let slider = Slider::new(&mut noise, 0.001..=0.1).logarithmic(true);
+        let about = "Where Converge ends: 95 of 100 pixels are then so near to what they converge to, as a share of white.";
+        slide(ui, "Noise", about, slider);
     });
     let changed = Settings {
         size: stated.size,
@@ -62,7 +65,7 @@ pub fn methods(ui: &mut Ui, session: &mut Session) {
         look.settings = stated;
         look.shadow = None;
     }
-    session.refine = refine;
+    (session.refine, session.noise) = (refine, noise);
 }
 
 /// When a ray has hit (Keinert et al. 2014, 3.2 to 3.4).

@@ -1,5 +1,6 @@
 //! What the picture took.
 
+use crate::converge::Convergence;
 use crate::engine::Exposed;
 use crate::session::Session;
 use eframe::egui::{Align, Layout, Response, RichText, Ui};
@@ -21,10 +22,10 @@ pub fn status(ui: &mut Ui, session: &Session) {
                     }
                     figures(ui, side, is_one);
                 }
-                let state = if shown.is_last {
-                    "finished"
-                } else {
-                    "refining"
+                let state = match shown.request.converge {
+                    _ if shown.is_last => "finished",
+                    Some(_) => "converging",
+                    None => "refining",
                 };
                 quiet(ui, state.to_owned());
             }
@@ -54,6 +55,38 @@ fn figures(ui: &mut Ui, side: &Exposed, is_long: bool) {
             samples => format!("{samples} rays a pixel"),
         },
     );
+    if let Some(convergence) = side.convergence {
+        quiet(ui, noise(&convergence)).on_hover_text(
+            "95 of 100 pixels are so near to what they converge to, as a share of white, and what is wanted",
+        );
+    }
+}
+
+/// How much noise there is, how much there is to be, and how long that takes.
+fn noise(convergence: &Convergence) -> String {
+    let percent = |share: f64| format!("{:.2} %", 100.0 * share);
+    let wanted = percent(convergence.wanted);
+    match (convergence.noise, convergence.left) {
+        (Some(noise), _) if noise <= convergence.wanted => format!("noise {}", percent(noise)),
+        (Some(noise), Some(left)) => {
+            format!(
+                "noise {} of {wanted}, {} left",
+                percent(noise),
+                lasting(left)
+            )
+        }
+        (Some(noise), None) => format!("noise {} of {wanted}", percent(noise)),
+        (None, _) => "noise not known yet".to_owned(),
+    }
+}
+
+/// A time that is estimated.
+fn lasting(seconds: f64) -> String {
+    match seconds {
+        s if s >= 2.0 * 3600.0 => format!("{:.0} h", s / 3600.0),
+        s if s >= 120.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{s:.0} s"),
+    }
 }
 
 fn quiet(ui: &mut Ui, text: String) -> Response {
@@ -76,5 +109,27 @@ mod tests {
     fn times_are_short() {
         let spoken = [0.0042, 0.25, 1.5, 12.34].map(super::spoken);
         assert_eq!(spoken, ["4.2 ms", "250 ms", "1.50 s", "12.3 s"]);
+    }
+
+    #[test]
+    fn noise_says_what_is_left() {
+        let of = |noise, left| {
+            let convergence = super::Convergence {
+                noise,
+                wanted: 0.005,
+                left,
+            };
+            super::noise(&convergence)
+        };
+        assert_eq!(of(None, None), "noise not known yet");
+        assert_eq!(
+            of(Some(0.0123), Some(75.2)),
+            "noise 1.23 % of 0.50 %, 75 s left"
+        );
+        assert_eq!(
+            of(Some(0.04), Some(1234.0)),
+            "noise 4.00 % of 0.50 %, 21 min left"
+        );
+        assert_eq!(of(Some(0.004), Some(0.0)), "noise 0.40 %");
     }
 }

@@ -7,6 +7,7 @@ pub(crate) mod expand;
 #[cfg(feature = "shaders")]
 pub(crate) mod export;
 pub(crate) mod fields;
+pub(crate) mod fit_ao;
 #[cfg(feature = "gpu")]
 pub(crate) mod gpu;
 pub(crate) mod init;

@@ -1,6 +1,7 @@
 //! One rendering: from a loaded scene to a file.
 
 use super::limited;
+use super::progressive;
 use super::summary::{Evaluations, Summary};
 use super::target::{Container, numbered, unnamed};
 use crate::args::RenderArgs;
@@ -88,7 +89,12 @@ impl<'a> Job<'a> {
             }
             label = format!("{label} {}/{}", number - frames.start + 1, frames.len());
         }
-        let (planes, copies) = planes(&path, self.args.view, self.args.denoise)?;
+        let (planes, mut copies) = planes(&path, self.args.view, self.args.denoise)?;
+        if progressive::is_asked(self.args) {
+            let [width, height] = scene.settings().size.map(u64::from);
+            let bytes = zeroset_scene::progressive::bytes(scene.settings().size, planes);
+            copies = copies.max(bytes.div_ceil((width * height).max(1)));
+        }
         (options.limits)
             .check_picture(scene.settings().size, planes, copies)
             .map_err(|e| Failure::new(Exit::Scene, e.to_string()))?;
@@ -101,7 +107,24 @@ impl<'a> Job<'a> {
             cancelled,
         };
         let restart = || progress.bar.reset();
+        let mut convergence = None;
         let rendered = match self.args.time_limit {
+            _ if progressive::is_asked(self.args) => {
+                let engine = &self.engine;
+                progressive::render(
+                    self.args,
+                    engine,
+                    loaded,
+                    &scene,
+                    planes,
+                    &progress,
+                    self.console,
+                )
+                .map(|picture| {
+                    convergence = Some((picture.noise, picture.samples));
+                    (picture.frame, picture.used, picture.lack)
+                })
+            }
             None => self
                 .engine
                 .render(&scene, planes, &progress, &restart)
@@ -110,7 +133,11 @@ impl<'a> Job<'a> {
             Some(seconds) => {
                 // beyond some years a limit is none
                 let most = Duration::from_secs_f64(seconds.min(1e9));
-                limited::render(&self.engine, &scene, planes, most, &progress, &restart)
+                limited::render(&self.engine, &scene, planes, most, &progress, &restart).map(
+                    |(frame, used, lack)| {
+                        (frame, used, lack.map(|lack| (lack.finished, lack.words())))
+                    },
+                )
             }
         };
         progress.bar.finish_and_clear();
@@ -120,7 +147,8 @@ impl<'a> Job<'a> {
             rendered.film = denoise::denoise(rendered.film, &stop)
                 .ok_or_else(|| Failure::from(RenderError::Cancelled))?;
         }
-        let lack_words = lack.as_ref().map(limited::Lack::words);
+        let (finished, lack_words) =
+            lack.map_or((1.0, None), |(share, words)| (share, Some(words)));
         self.write(
             &path,
             &scene,
@@ -129,7 +157,6 @@ impl<'a> Job<'a> {
             lack_words.as_deref(),
             cancelled,
         )?;
-        let finished = lack.as_ref().map_or(1.0, |lack| lack.finished);
         self.report(
             &path,
             &scene,
@@ -138,6 +165,7 @@ impl<'a> Job<'a> {
             &rendered,
             &used,
             finished,
+            convergence,
         )?;
         Ok(lack_words.map(|words| {
             Failure::with_help(
@@ -212,6 +240,7 @@ impl<'a> Job<'a> {
         rendered: &Frame,
         used: &Used,
         finished: f64,
+        convergence: Option<(Option<f64>, f64)>,
     ) -> Result<(), Failure> {
         let statistics = &rendered.statistics;
         let rays = statistics.rays.max(1) as f64;
@@ -234,6 +263,8 @@ impl<'a> Job<'a> {
             evaluations: Evaluations::of(statistics),
             evaluations_per_ray: statistics.evaluations.total() as f64 / rays,
             finished,
+            noise: convergence.and_then(|(noise, _)| noise),
+            rays_a_pixel: convergence.map(|(_, samples)| samples),
             settings: scene.settings(),
         };
         if self.args.json {

@@ -198,7 +198,7 @@ pub(crate) fn render(
     }
 }
 
-fn sum(a: &Statistics, b: &Statistics) -> Statistics {
+pub(super) fn sum(a: &Statistics, b: &Statistics) -> Statistics {
     Statistics {
         rays: a.rays + b.rays,
         hits: a.hits + b.hits,

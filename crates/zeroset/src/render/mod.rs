@@ -2,6 +2,7 @@
 
 mod job;
 mod limited;
+mod progressive;
 mod summary;
 mod target;
 mod watch;

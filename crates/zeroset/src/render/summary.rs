@@ -34,6 +34,12 @@ pub(crate) struct Summary<'a> {
     pub(crate) evaluations_per_ray: f64,
     /// Share of the pixels that have all their rays: less than 1 where a time limit ended the picture.
     pub(crate) finished: f64,
+    /// How wide 95 % intervals are, where that was measured: see `--noise`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) noise: Option<f64>,
+    /// Rays that a pixel has on average, those of earlier runs included, where a picture converges.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) rays_a_pixel: Option<f64>,
     pub(crate) settings: &'a Settings,
 }
 
@@ -81,6 +87,16 @@ impl Summary<'_> {
             self.seconds,
             short(self.rays_per_second),
             self.evaluations_per_ray,
-        )
+        ) + &self.convergence()
+    }
+
+    fn convergence(&self) -> String {
+        match (self.noise, self.rays_a_pixel) {
+            (Some(noise), Some(rays)) => {
+                format!(", {rays:.0} rays a pixel leave a noise of {noise:.5}")
+            }
+            (None, Some(rays)) => format!(", {rays:.0} rays a pixel"),
+            _ => String::new(),
+        }
     }
 }

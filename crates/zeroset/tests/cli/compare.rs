@@ -77,3 +77,20 @@ fn what_cannot_be_compared_is_said() {
     folder.bad("compare a.png cut.png", 4, &["cut.png", "damaged"]);
     folder.bad("compare a.png a.png -o none/d.png", 4, &["does not exist"]);
 }
+
+#[test]
+fn several_pictures_are_a_table() {
+    let folder = Folder::with(BALL);
+    folder.good("render scene.star --size 48x32 -o a.png");
+    folder.good("render scene.star --size 48x32 -o b.png --ao none");
+    let table = folder.good("compare a.png a.png b.png").out;
+    let lines: Vec<&str> = table.lines().collect();
+    assert_eq!(lines.len(), 3, "{table}");
+    assert!(lines[0].starts_with("RMSE") && lines[1].contains("equal"));
+    assert!(lines[1].ends_with("a.png") && lines[2].ends_with("b.png"));
+    let json = folder.good("compare a.png a.png b.png --json").out;
+    let second: serde_json::Value = serde_json::from_str(json.lines().nth(1).unwrap()).unwrap();
+    assert!(second["file"] == "b.png" && second["rmse"].as_f64().unwrap() > 0.0);
+    folder.bad("compare a.png a.png b.png -o d.png", 2, &["one picture"]);
+    folder.bad("compare a.png", 2, &["B"]);
+}

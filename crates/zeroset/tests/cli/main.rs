@@ -2,9 +2,11 @@
 
 mod backend;
 mod compare;
+mod converge;
 mod exits;
 #[cfg(feature = "shaders")]
 mod export;
+mod fit;
 mod frames;
 mod hostile;
 mod language;
