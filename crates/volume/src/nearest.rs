@@ -1,0 +1,391 @@
+//! The nearest place of a mesh, for the nodes of a grid: many nodes side by side in SIMD lanes.
+//!
+//! Neighbours share nearly all of their way through a tree. A vector of lanes holds nodes of a small cube, in Morton order, and goes
+//! down together: a branch is left when it is too far for every lane. The nearest faces of the vector before are tried first,
+//! so that most of the tree is too far from the start. Which face is nearest is found in single precision, its distance again
+//! in double precision: of two faces that are as far but for rounding, either may be taken.
+
+use crate::bvh::{Bounds, Bvh, STACK};
+use crate::mesh::v;
+use fearless_simd::{Simd, prelude::*};
+
+/// Nodes of a tile along an axis.
+pub(crate) const TILE: usize = 8;
+/// Nodes of a tile.
+pub(crate) const NODES: usize = TILE * TILE * TILE;
+/// No face.
+const NONE: u32 = u32::MAX;
+
+/// A face as the lanes read it: its corners, one over the squares of its edges' lengths, its normal, and for each edge the
+/// direction in the plane of the face that points out of it.
+#[derive(Clone, Copy, Debug)]
+struct Face {
+    corners: [[f32; 3]; 3],
+    edges: [[f32; 3]; 3],
+    inverse: [f32; 3],
+    normal: [f32; 3],
+    out: [[f32; 3]; 3],
+    number: u32,
+}
+
+impl Face {
+    fn new(t: [[f64; 3]; 3], number: u32) -> Face {
+        let edges = [0, 1, 2].map(|k| v::sub(t[(k + 1) % 3], t[k]));
+        let normal = v::unit(v::cross(edges[0], edges[1]));
+        let single = |x: [f64; 3]| x.map(|x| x as f32);
+        Face {
+            corners: t.map(single),
+            edges: edges.map(single),
+            inverse: edges.map(|e| {
+                let square = v::dot(e, e);
+                // a face that is a point has edges without length
+                if square > 0.0 {
+                    (1.0 / square).min(1e30) as f32
+                } else {
+                    0.0
+                }
+            }),
+            normal: single(normal),
+            out: edges.map(|e| single(v::unit(v::cross(e, normal)))),
+            number,
+        }
+    }
+}
+
+/// Faces that can be asked for the nearest one.
+#[derive(Debug)]
+pub(crate) struct Nearest {
+    tree: Bvh,
+    /// In the order of the tree's leaves.
+    faces: Vec<Face>,
+    /// The corners by the faces' own numbers, in the space of the tree.
+    exact: Vec<[[f64; 3]; 3]>,
+    centre: [f64; 3],
+    scale: f64,
+}
+
+/// Nodes of a grid: where the first is, and how far one is from the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Lattice {
+    pub(crate) nodes: [usize; 3],
+    pub(crate) origin: [f64; 3],
+    pub(crate) step: f64,
+}
+
+impl Lattice {
+    pub(crate) fn at(&self, node: [usize; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|k| self.origin[k] + self.step * node[k] as f64)
+    }
+
+    pub(crate) fn count(&self) -> usize {
+        self.nodes.iter().product()
+    }
+
+    /// Tiles along each axis.
+    pub(crate) fn tiles(&self) -> [usize; 3] {
+        self.nodes.map(|n| n.div_ceil(TILE))
+    }
+
+    /// The nodes of a tile, from the first to behind the last, along each axis.
+    pub(crate) fn tile(&self, tile: usize) -> [std::ops::Range<usize>; 3] {
+        let [x, y, _] = self.tiles();
+        let at = [tile % x, tile / x % y, tile / (x * y)];
+        [0, 1, 2].map(|k| at[k] * TILE..((at[k] + 1) * TILE).min(self.nodes[k]))
+    }
+}
+
+/// Where the n-th node of a tile is, along the Morton curve (Morton 1966).
+fn morton(n: usize) -> [usize; 3] {
+    [0, 1, 2].map(|k| (0..3).map(|bit| (n >> (3 * bit + k) & 1) << bit).sum())
+}
+
+impl Nearest {
+    /// For these triangles, which may be points or lines; there must be one at least.
+    pub(crate) fn new(triangles: &[[[f64; 3]; 3]]) -> Nearest {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for p in triangles.iter().flatten() {
+            for k in 0..3 {
+                low[k] = low[k].min(p[k]);
+                high[k] = high[k].max(p[k]);
+            }
+        }
+        // about the origin and of size 1, so that single precision is as good for a mesh of any size at any place
+        let centre = [0, 1, 2].map(|k| 0.5 * (low[k] + high[k]));
+        let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
+        let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
+        let exact: Vec<[[f64; 3]; 3]> = (triangles.iter())
+            .map(|t| t.map(|p| v::scale(v::sub(p, centre), scale)))
+            .collect();
+        let bounds: Vec<Bounds> = (exact.iter())
+            .map(|t| Bounds::of(t.map(|p| p.map(|x| x as f32))))
+            .collect();
+        let tree = Bvh::new(&bounds);
+        let faces = (tree.items.iter())
+            .map(|i| Face::new(exact[*i as usize], *i))
+            .collect();
+        Nearest {
+            tree,
+            faces,
+            exact,
+            centre,
+            scale,
+        }
+    }
+
+    /// The distances of a tile's nodes: written where `values` has a node that is farther, in the order x, y, z of the tile. What is
+    /// farther than that stays.
+    #[inline(always)]
+    pub(crate) fn tile<S: Simd>(
+        &self,
+        simd: S,
+        lattice: &Lattice,
+        tile: usize,
+        values: &mut [f32; NODES],
+    ) {
+        let ranges = lattice.tile(tile);
+        let wide = S::f32s::LEN;
+        let mut seeds = [NONE; 2];
+        let mut columns = [[0.0_f32; 16]; 3];
+        let mut farthest = [0.0_f32; 16];
+        let mut best = [NONE; 16];
+        for first in (0..NODES).step_by(wide) {
+            let mut places = [[0; 3]; 16];
+            let mut any = false;
+            for lane in 0..wide {
+                let at = morton(first + lane);
+                any |= (0..3).all(|k| ranges[k].start + at[k] < ranges[k].end);
+                // beyond the grid its last nodes stand in
+                places[lane] = [0, 1, 2].map(|k| at[k].min(ranges[k].end - 1 - ranges[k].start));
+            }
+            if !any {
+                continue;
+            }
+            for lane in 0..wide {
+                let at = places[lane];
+                let p = lattice.at([0, 1, 2].map(|k| ranges[k].start + at[k]));
+                for k in 0..3 {
+                    columns[k][lane] = ((p[k] - self.centre[k]) * self.scale) as f32;
+                }
+                let known = f64::from(values[index(at)]) * self.scale;
+                farthest[lane] = (known * known).min(1e30) as f32;
+            }
+            self.nearest(simd, &columns, &farthest, seeds, &mut best);
+            for lane in 0..wide {
+                let (at, found) = (places[lane], best[lane]);
+                if found == NONE {
+                    continue;
+                }
+                let p = lattice.at([0, 1, 2].map(|k| ranges[k].start + at[k]));
+                let p = v::scale(v::sub(p, self.centre), self.scale);
+                let d =
+                    distance2(p, &self.exact[self.faces[found as usize].number as usize]).sqrt();
+                let value = &mut values[index(at)];
+                *value = value.min((d / self.scale) as f32);
+            }
+            if best[0] != NONE {
+                seeds = [best[0], best[wide - 1]];
+            }
+        }
+    }
+
+    /// The nearest faces of the places in `columns`, as far as they are nearer than `farthest` (squares).
+    #[inline(always)]
+    fn nearest<S: Simd>(
+        &self,
+        simd: S,
+        columns: &[[f32; 16]; 3],
+        farthest: &[f32; 16],
+        seeds: [u32; 2],
+        found: &mut [u32; 16],
+    ) {
+        let wide = S::f32s::LEN;
+        let p = [
+            S::f32s::from_slice(simd, &columns[0][..wide]),
+            S::f32s::from_slice(simd, &columns[1][..wide]),
+            S::f32s::from_slice(simd, &columns[2][..wide]),
+        ];
+        let mut best = S::f32s::from_slice(simd, &farthest[..wide]);
+        let mut number = S::u32s::splat(simd, NONE);
+        for seed in seeds {
+            if seed != NONE {
+                (best, number) = self.face(simd, seed, &p, best, number);
+            }
+        }
+        let mut stack = [(0_u32, 0.0_f32); STACK];
+        let mut height = 1;
+        // a bound for all lanes, refreshed when one of them has found something nearer
+        let mut most = largest::<S>(best);
+        while height > 0 {
+            height -= 1;
+            let (at, near) = stack[height];
+            if near >= most {
+                continue;
+            }
+            let node = &self.tree.nodes[at as usize];
+            if node.count > 0 {
+                for face in node.first..node.first + node.count {
+                    (best, number) = self.face(simd, face, &p, best, number);
+                }
+                most = largest::<S>(best);
+                continue;
+            }
+            let left = apart2(simd, &self.tree.nodes[node.first as usize].bounds, &p);
+            let right = apart2(simd, &self.tree.nodes[node.first as usize + 1].bounds, &p);
+            let (enters_left, enters_right) = (
+                left.simd_lt(best).any_true(),
+                right.simd_lt(best).any_true(),
+            );
+            let (l, r) = (smallest::<S>(left), smallest::<S>(right));
+            let mut push = |child: u32, near: f32| {
+                stack[height] = (child, near);
+                height += 1;
+            };
+            // the nearer one comes off the stack first
+            if l <= r {
+                if enters_right {
+                    push(node.first + 1, r);
+                }
+                if enters_left {
+                    push(node.first, l);
+                }
+            } else {
+                if enters_left {
+                    push(node.first, l);
+                }
+                if enters_right {
+                    push(node.first + 1, r);
+                }
+            }
+        }
+        number.store_slice(&mut found[..wide]);
+    }
+
+    /// The nearer of what is known and a face.
+    #[inline(always)]
+    fn face<S: Simd>(
+        &self,
+        simd: S,
+        at: u32,
+        p: &[S::f32s; 3],
+        best: S::f32s,
+        number: S::u32s,
+    ) -> (S::f32s, S::u32s) {
+        let f = &self.faces[at as usize];
+        let d = from_corner(simd, p, &f.corners[0]);
+        let height = dot(simd, &d, &f.normal);
+        let above = height * height;
+        // no place of a face is nearer than its plane
+        if !above.simd_lt(best).any_true() {
+            return (best, number);
+        }
+        let mut nearest = S::f32s::splat(simd, f32::INFINITY);
+        let mut beyond = S::f32s::splat(simd, f32::NEG_INFINITY);
+        let mut k = 0;
+        while k < 3 {
+            let d = from_corner(simd, p, &f.corners[k]);
+            let t = dot(simd, &d, &f.edges[k]) * f.inverse[k];
+            let t = t
+                .max(S::f32s::splat(simd, 0.0))
+                .min(S::f32s::splat(simd, 1.0));
+            let e = [
+                d[0] - t * f.edges[k][0],
+                d[1] - t * f.edges[k][1],
+                d[2] - t * f.edges[k][2],
+            ];
+            nearest = nearest.min(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+            beyond = beyond.max(dot(simd, &d, &f.out[k]));
+            k += 1;
+        }
+        // where the foot on the plane is within the face; a face without area has no such places
+        let within = beyond.simd_lt(S::f32s::splat(simd, 0.0));
+        let d2 = within.select(above, nearest);
+        let nearer = d2.simd_lt(best);
+        (
+            nearer.select(d2, best),
+            nearer.select(S::u32s::splat(simd, at), number),
+        )
+    }
+}
+
+/// The place of a node in the values of a tile.
+#[inline(always)]
+pub(crate) fn index(at: [usize; 3]) -> usize {
+    at[0] + TILE * (at[1] + TILE * at[2])
+}
+
+#[inline(always)]
+fn from_corner<S: Simd>(simd: S, p: &[S::f32s; 3], c: &[f32; 3]) -> [S::f32s; 3] {
+    let _ = simd;
+    [p[0] - c[0], p[1] - c[1], p[2] - c[2]]
+}
+
+#[inline(always)]
+fn dot<S: Simd>(simd: S, a: &[S::f32s; 3], b: &[f32; 3]) -> S::f32s {
+    let _ = simd;
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Squared distances to a box.
+#[inline(always)]
+fn apart2<S: Simd>(simd: S, b: &Bounds, p: &[S::f32s; 3]) -> S::f32s {
+    let zero = S::f32s::splat(simd, 0.0);
+    let x = (S::f32s::splat(simd, b.low[0]) - p[0])
+        .max(p[0] - b.high[0])
+        .max(zero);
+    let y = (S::f32s::splat(simd, b.low[1]) - p[1])
+        .max(p[1] - b.high[1])
+        .max(zero);
+    let z = (S::f32s::splat(simd, b.low[2]) - p[2])
+        .max(p[2] - b.high[2])
+        .max(zero);
+    x * x + y * y + z * z
+}
+
+#[inline(always)]
+fn largest<S: Simd>(x: S::f32s) -> f32 {
+    let mut most = f32::NEG_INFINITY;
+    let mut i = 0;
+    while i < S::f32s::LEN {
+        most = most.max(x[i]);
+        i += 1;
+    }
+    most
+}
+
+#[inline(always)]
+fn smallest<S: Simd>(x: S::f32s) -> f32 {
+    let mut least = f32::INFINITY;
+    let mut i = 0;
+    while i < S::f32s::LEN {
+        least = least.min(x[i]);
+        i += 1;
+    }
+    least
+}
+
+/// The squared distance of a place from a triangle, which may be a line or a point (Ericson 2005, 5.1.5, with the edges by
+/// themselves, which stays right where the triangle has no area).
+pub(crate) fn distance2(p: [f64; 3], t: &[[f64; 3]; 3]) -> f64 {
+    let normal = v::cross(v::sub(t[1], t[0]), v::sub(t[2], t[0]));
+    let square = v::dot(normal, normal);
+    let mut within = square > 0.0;
+    let mut least = f64::INFINITY;
+    for k in 0..3 {
+        let (a, b) = (t[k], t[(k + 1) % 3]);
+        let (e, d) = (v::sub(b, a), v::sub(p, a));
+        within &= v::dot(v::cross(e, d), normal) > 0.0;
+        let length = v::dot(e, e);
+        let s = if length > 0.0 {
+            (v::dot(d, e) / length).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        let off = v::sub(d, v::scale(e, s));
+        least = least.min(v::dot(off, off));
+    }
+    if within {
+        let height = v::dot(v::sub(p, t[0]), normal);
+        return least.min(height * height / square);
+    }
+    least
+}
