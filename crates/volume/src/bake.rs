@@ -301,8 +301,6 @@ impl Signs<'_> {
 
     /// Of a mesh with holes: the winding number of every node; away from holes it is whole.
     fn numbers(&self, watch: &dyn Watch) -> Result<Vec<f32>, BakeError> {
-        /// What the cones may add at most where it is left out: far from 1/2, so that lids are not moved by it.
-        const LITTLE: f64 = 0.1;
         let lattice = self.lattice;
         let mut numbers = vec![0.0; lattice.count()];
         let [tx, ty, _] = lattice.tiles();
@@ -321,28 +319,76 @@ impl Signs<'_> {
                     return Ok(());
                 }
                 for tile in slab * tx * ty..(slab + 1) * tx * ty {
-                    let ranges = lattice.tile(tile);
-                    let corner =
-                        |f: fn(&Range) -> usize| lattice.at([0, 1, 2].map(|k| f(&ranges[k])));
-                    let (low, high) = (corner(|r| r.start), corner(|r| r.end - 1));
-                    let centre = v::scale(v::add(low, high), 0.5);
-                    let radius = 0.5 * v::length(v::sub(high, low));
-                    let near = self.open.most(centre, radius) > LITTLE;
-                    let [nx, ny, _] = lattice.nodes;
-                    each(lattice, tile, |at, _| {
-                        let cones = if near {
-                            let node = [at % nx, at / nx % ny, slab * TILE + at / (nx * ny)];
-                            self.open.number(lattice.at(node))
-                        } else {
-                            0.0
-                        };
-                        part[at] = (f64::from(whole[at]) - cones) as f32;
-                    });
+                    self.tile(tile, &whole, part);
                 }
                 Ok(())
             })?;
         Ok(numbers)
     }
+
+    /// The winding numbers of a tile: what crossings say, less what the cones add.
+    fn tile(&self, tile: usize, whole: &[i32], part: &mut [f32]) {
+        /// What the cones may add at most where it is left out: far from 1/2, so that lids are not moved by it.
+        const LITTLE: f64 = 0.1;
+        /// How far from 1/2 a number may be that is interpolated.
+        const CLEAR: f64 = 0.2;
+        let lattice = self.lattice;
+        let ranges = lattice.tile(tile);
+        let (low, high) = (
+            lattice.at([0, 1, 2].map(|k| ranges[k].start)),
+            lattice.at([0, 1, 2].map(|k| ranges[k].end - 1)),
+        );
+        let centre = v::scale(v::add(low, high), 0.5);
+        let radius = 0.5 * v::length(v::sub(high, low));
+        if self.open.most(centre, radius) <= LITTLE {
+            each(lattice, tile, |at, _| part[at] = whole[at] as f32);
+            return;
+        }
+        // away from the cones their number is harmonic: what lies between 27 places of the tile is known well enough to tell
+        // the side of 1/2 where it is clear
+        let smooth = self
+            .open
+            .is_away(centre, radius + lattice.step * TILE as f64);
+        let knots: Option<[f64; 27]> = smooth.then(|| {
+            std::array::from_fn(|i| {
+                let share = [i % 3, i / 3 % 3, i / 9].map(|n| 0.5 * n as f64);
+                self.open
+                    .number([0, 1, 2].map(|k| low[k] + share[k] * (high[k] - low[k])))
+            })
+        });
+        let [nx, ny, _] = lattice.nodes;
+        let first = ranges[2].start;
+        each(lattice, tile, |at, _| {
+            let node = [at % nx, at / nx % ny, first + at / (nx * ny)];
+            let p = lattice.at(node);
+            let about = knots.as_ref().map(|knots| {
+                let share = [0, 1, 2].map(|k| {
+                    let side = high[k] - low[k];
+                    if side > 0.0 {
+                        (p[k] - low[k]) / side
+                    } else {
+                        0.0
+                    }
+                });
+                f64::from(whole[at]) - between(knots, share)
+            });
+            part[at] = match about {
+                Some(number) if (number - 0.5).abs() > CLEAR => number,
+                _ => f64::from(whole[at]) - self.open.number(p),
+            } as f32;
+        });
+    }
+}
+
+/// The quadratic function through 3x3x3 values at 0, 1/2 and 1, x fastest.
+fn between(knots: &[f64; 27], at: [f64; 3]) -> f64 {
+    let weights = at.map(|t| {
+        let (low, high) = (2.0 * t - 1.0, t - 1.0);
+        [low * high, -4.0 * t * high, t * low]
+    });
+    (0..27)
+        .map(|i| knots[i] * weights[0][i % 3] * weights[1][i / 3 % 3] * weights[2][i / 9])
+        .sum()
 }
 
 type Range = std::ops::Range<usize>;

@@ -29,26 +29,65 @@ struct Face {
 }
 
 impl Face {
-    fn new(t: [[f64; 3]; 3], number: u32) -> Face {
-        let edges = [0, 1, 2].map(|k| v::sub(t[(k + 1) % 3], t[k]));
-        let normal = v::unit(v::cross(edges[0], edges[1]));
+    fn new(exact: &Exact, number: u32) -> Face {
         let single = |x: [f64; 3]| x.map(|x| x as f32);
+        let [a, b, c] = exact.corners;
         Face {
-            corners: t.map(single),
-            edges: edges.map(single),
-            inverse: edges.map(|e| {
-                let square = v::dot(e, e);
-                // a face that is a point has edges without length
-                if square > 0.0 {
-                    (1.0 / square).min(1e30) as f32
-                } else {
-                    0.0
-                }
-            }),
-            normal: single(normal),
-            out: edges.map(|e| single(v::unit(v::cross(e, normal)))),
+            corners: exact.corners.map(single),
+            edges: [v::sub(b, a), v::sub(c, b), v::sub(a, c)].map(single),
+            inverse: exact.inverse.map(|x| x.min(1e30) as f32),
+            normal: single(exact.normal),
+            out: exact.out.map(single),
             number,
         }
+    }
+}
+
+/// A face in double precision: like [`Face`].
+#[derive(Clone, Copy, Debug)]
+struct Exact {
+    corners: [[f64; 3]; 3],
+    inverse: [f64; 3],
+    normal: [f64; 3],
+    out: [[f64; 3]; 3],
+}
+
+impl Exact {
+    fn new(corners: [[f64; 3]; 3]) -> Exact {
+        let edges = [0, 1, 2].map(|k| v::sub(corners[(k + 1) % 3], corners[k]));
+        let normal = v::unit(v::cross(edges[0], edges[1]));
+        Exact {
+            corners,
+            inverse: edges.map(|e| {
+                let square = v::dot(e, e);
+                // a face that is a line or a point has edges without length
+                if square > 0.0 { 1.0 / square } else { 0.0 }
+            }),
+            normal,
+            out: edges.map(|e| v::unit(v::cross(e, normal))),
+        }
+    }
+
+    /// The squared distance of a place: of the nearest edge, or of the plane where the foot on it is within all edges (Ericson
+    /// 2005, section 5.1.5, without its regions, so that what has no area is right too).
+    #[inline(always)]
+    fn distance2(&self, p: [f64; 3]) -> f64 {
+        let mut least = f64::INFINITY;
+        let mut beyond = f64::NEG_INFINITY;
+        for k in 0..3 {
+            let d = v::sub(p, self.corners[k]);
+            let e = v::sub(self.corners[(k + 1) % 3], self.corners[k]);
+            let t = (v::dot(d, e) * self.inverse[k]).clamp(0.0, 1.0);
+            let off = v::sub(d, v::scale(e, t));
+            least = least.min(v::dot(off, off));
+            beyond = beyond.max(v::dot(d, self.out[k]));
+        }
+        // a face without area is beyond all its edges nowhere, but not within them either
+        if beyond < 0.0 {
+            let height = v::dot(v::sub(p, self.corners[0]), self.normal);
+            return height * height;
+        }
+        least
     }
 }
 
@@ -59,7 +98,7 @@ pub(crate) struct Nearest {
     /// In the order of the tree's leaves.
     faces: Vec<Face>,
     /// The corners by the faces' own numbers, in the space of the tree.
-    exact: Vec<[[f64; 3]; 3]>,
+    exact: Vec<Exact>,
     centre: [f64; 3],
     scale: f64,
 }
@@ -113,15 +152,15 @@ impl Nearest {
         let centre = [0, 1, 2].map(|k| 0.5 * (low[k] + high[k]));
         let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
         let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
-        let exact: Vec<[[f64; 3]; 3]> = (triangles.iter())
-            .map(|t| t.map(|p| v::scale(v::sub(p, centre), scale)))
+        let exact: Vec<Exact> = (triangles.iter())
+            .map(|t| Exact::new(t.map(|p| v::scale(v::sub(p, centre), scale))))
             .collect();
         let bounds: Vec<Bounds> = (exact.iter())
-            .map(|t| Bounds::of(t.map(|p| p.map(|x| x as f32))))
+            .map(|t| Bounds::of(t.corners.map(|p| p.map(|x| x as f32))))
             .collect();
         let tree = Bvh::new(&bounds);
         let faces = (tree.items.iter())
-            .map(|i| Face::new(exact[*i as usize], *i))
+            .map(|i| Face::new(&exact[*i as usize], *i))
             .collect();
         Nearest {
             tree,
@@ -177,8 +216,8 @@ impl Nearest {
                 }
                 let p = lattice.at([0, 1, 2].map(|k| ranges[k].start + at[k]));
                 let p = v::scale(v::sub(p, self.centre), self.scale);
-                let d =
-                    distance2(p, &self.exact[self.faces[found as usize].number as usize]).sqrt();
+                let number = self.faces[found as usize].number;
+                let d = self.exact[number as usize].distance2(p).sqrt();
                 let value = &mut values[index(at)];
                 *value = value.min((d / self.scale) as f32);
             }
@@ -211,14 +250,14 @@ impl Nearest {
                 (best, number) = self.face(simd, seed, &p, best, number);
             }
         }
-        let mut stack = [(0_u32, 0.0_f32); STACK];
+        // what is put aside, with its distance from each lane
+        let mut stack = [(0_u32, S::f32s::splat(simd, 0.0)); STACK];
         let mut height = 1;
-        // a bound for all lanes, refreshed when one of them has found something nearer
-        let mut most = largest::<S>(best);
         while height > 0 {
             height -= 1;
             let (at, near) = stack[height];
-            if near >= most {
+            // lanes may have found something nearer since
+            if !near.simd_lt(best).any_true() {
                 continue;
             }
             let node = &self.tree.nodes[at as usize];
@@ -226,35 +265,28 @@ impl Nearest {
                 for face in node.first..node.first + node.count {
                     (best, number) = self.face(simd, face, &p, best, number);
                 }
-                most = largest::<S>(best);
                 continue;
             }
-            let left = apart2(simd, &self.tree.nodes[node.first as usize].bounds, &p);
-            let right = apart2(simd, &self.tree.nodes[node.first as usize + 1].bounds, &p);
-            let (enters_left, enters_right) = (
-                left.simd_lt(best).any_true(),
-                right.simd_lt(best).any_true(),
-            );
-            let (l, r) = (smallest::<S>(left), smallest::<S>(right));
-            let mut push = |child: u32, near: f32| {
-                stack[height] = (child, near);
-                height += 1;
-            };
-            // the nearer one comes off the stack first
-            if l <= r {
-                if enters_right {
-                    push(node.first + 1, r);
-                }
-                if enters_left {
-                    push(node.first, l);
-                }
+            let first = node.first;
+            let left = apart2(simd, &self.tree.nodes[first as usize].bounds, &p);
+            let right = apart2(simd, &self.tree.nodes[first as usize + 1].bounds, &p);
+            let enters_left = left.simd_lt(best).any_true();
+            let enters_right = right.simd_lt(best).any_true();
+            // the one that is nearer to the first lane comes off the stack first
+            let swap = left[0] <= right[0];
+            let (near, far) = if swap { (left, right) } else { (right, left) };
+            let (enters_near, enters_far) = if swap {
+                (enters_left, enters_right)
             } else {
-                if enters_left {
-                    push(node.first, l);
-                }
-                if enters_right {
-                    push(node.first + 1, r);
-                }
+                (enters_right, enters_left)
+            };
+            if enters_far {
+                stack[height] = (first + u32::from(swap), far);
+                height += 1;
+            }
+            if enters_near {
+                stack[height] = (first + u32::from(!swap), near);
+                height += 1;
             }
         }
         number.store_slice(&mut found[..wide]);
@@ -339,53 +371,4 @@ fn apart2<S: Simd>(simd: S, b: &Bounds, p: &[S::f32s; 3]) -> S::f32s {
         .max(p[2] - b.high[2])
         .max(zero);
     x * x + y * y + z * z
-}
-
-#[inline(always)]
-fn largest<S: Simd>(x: S::f32s) -> f32 {
-    let mut most = f32::NEG_INFINITY;
-    let mut i = 0;
-    while i < S::f32s::LEN {
-        most = most.max(x[i]);
-        i += 1;
-    }
-    most
-}
-
-#[inline(always)]
-fn smallest<S: Simd>(x: S::f32s) -> f32 {
-    let mut least = f32::INFINITY;
-    let mut i = 0;
-    while i < S::f32s::LEN {
-        least = least.min(x[i]);
-        i += 1;
-    }
-    least
-}
-
-/// The squared distance of a place from a triangle, which may be a line or a point (Ericson 2005, 5.1.5, with the edges by
-/// themselves, which stays right where the triangle has no area).
-pub(crate) fn distance2(p: [f64; 3], t: &[[f64; 3]; 3]) -> f64 {
-    let normal = v::cross(v::sub(t[1], t[0]), v::sub(t[2], t[0]));
-    let square = v::dot(normal, normal);
-    let mut within = square > 0.0;
-    let mut least = f64::INFINITY;
-    for k in 0..3 {
-        let (a, b) = (t[k], t[(k + 1) % 3]);
-        let (e, d) = (v::sub(b, a), v::sub(p, a));
-        within &= v::dot(v::cross(e, d), normal) > 0.0;
-        let length = v::dot(e, e);
-        let s = if length > 0.0 {
-            (v::dot(d, e) / length).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
-        let off = v::sub(d, v::scale(e, s));
-        least = least.min(v::dot(off, off));
-    }
-    if within {
-        let height = v::dot(v::sub(p, t[0]), normal);
-        return least.min(height * height / square);
-    }
-    least
 }

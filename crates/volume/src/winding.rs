@@ -166,4 +166,27 @@ impl Winding {
         }
         sum
     }
+
+    /// Whether all triangles are farther than `radius` from `p`.
+    pub(crate) fn is_away(&self, p: [f64; 3], radius: f64) -> bool {
+        let mut todo = vec![0];
+        while let Some(at) = todo.pop() {
+            let Some(node) = self.tree.nodes.get(at) else {
+                continue;
+            };
+            let b = &node.bounds;
+            let d = [0, 1, 2].map(|k| {
+                let (low, high) = (f64::from(b.low[k]), f64::from(b.high[k]));
+                (low - p[k]).max(p[k] - high).max(0.0)
+            });
+            if v::length(d) > radius {
+                continue;
+            }
+            if node.count > 0 {
+                return false;
+            }
+            todo.extend([node.first as usize, node.first as usize + 1]);
+        }
+        true
+    }
 }
