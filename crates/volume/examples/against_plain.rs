@@ -100,15 +100,19 @@ impl Plain {
     }
 
     fn apart2(&self, node: usize, p: Point) -> f32 {
-        let (low, high, ..) = self.nodes[node];
-        let d = [0, 1, 2].map(|k| (low[k] - p[k]).max(p[k] - high[k]).max(0.0));
+        let (low, high, ..) = &self.nodes[node];
+        let away = |k: usize| (low[k] - p[k]).max(p[k] - high[k]).max(0.0);
+        let d = [away(0), away(1), away(2)];
         dot(d, d)
     }
 
     fn nearest2(&self, p: Point) -> f32 {
         let mut best = f32::INFINITY;
-        let mut todo = vec![(0, self.apart2(0, p))];
-        while let Some((at, d)) = todo.pop() {
+        let mut todo = [(0, 0.0); 64];
+        let mut height = 1;
+        while height > 0 {
+            height -= 1;
+            let (at, d) = todo[height];
             let (_, _, first, last) = self.nodes[at];
             if d >= best {
                 continue;
@@ -123,7 +127,8 @@ impl Plain {
                 (at + 1, self.apart2(at + 1, p)),
                 (first, self.apart2(first, p)),
             );
-            todo.extend(if l.1 < r.1 { [r, l] } else { [l, r] });
+            (todo[height], todo[height + 1]) = if l.1 < r.1 { (r, l) } else { (l, r) };
+            height += 2;
         }
         best
     }

@@ -382,16 +382,17 @@ impl Signs<'_> {
 
 /// The quadratic function through 3x3x3 values at 0, 1/2 and 1, x fastest.
 fn between(knots: &[f64; 27], at: [f64; 3]) -> f64 {
-    let weights = at.map(|t| {
+    let weights = |t: f64| {
         let (low, high) = (2.0 * t - 1.0, t - 1.0);
         [low * high, -4.0 * t * high, t * low]
-    });
-    (0..27)
-        .map(|i| knots[i] * weights[0][i % 3] * weights[1][i / 3 % 3] * weights[2][i / 9])
-        .sum()
+    };
+    let (x, y, z) = (weights(at[0]), weights(at[1]), weights(at[2]));
+    let mut sum = 0.0;
+    for (i, knot) in knots.iter().enumerate() {
+        sum += knot * x[i % 3] * y[i / 3 % 3] * z[i / 9];
+    }
+    sum
 }
-
-type Range = std::ops::Range<usize>;
 
 /// Where the sign changes between neighbours though the mesh is too far from both to be between them: places of the lids that close
 /// holes. With them the distances are those of the surface that the signs show, and no steeper than one.

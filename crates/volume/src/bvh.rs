@@ -36,7 +36,8 @@ impl Bounds {
 
     /// Half the surface.
     fn area(&self) -> f32 {
-        let [x, y, z] = [0, 1, 2].map(|k| (self.high[k] - self.low[k]).max(0.0));
+        let side = |k: usize| (self.high[k] - self.low[k]).max(0.0);
+        let (x, y, z) = (side(0), side(1), side(2));
         x * y + y * z + z * x
     }
 
@@ -149,7 +150,8 @@ impl Bvh {
 /// Sorts items into two parts and says how many the first one has.
 fn split(bounds: &[Bounds], items: &mut [u32], in_half: bool) -> usize {
     let centres = items.iter().fold(Bounds::NONE, |b, i| {
-        let c = [0, 1, 2].map(|k| bounds[*i as usize].centre(k));
+        let item = &bounds[*i as usize];
+        let c = [item.centre(0), item.centre(1), item.centre(2)];
         b.with(Bounds { low: c, high: c })
     });
     let mut best: Option<(f32, usize, usize)> = None;

@@ -112,8 +112,14 @@ pub(crate) struct Lattice {
 }
 
 impl Lattice {
+    #[inline(always)]
     pub(crate) fn at(&self, node: [usize; 3]) -> [f64; 3] {
-        [0, 1, 2].map(|k| self.origin[k] + self.step * node[k] as f64)
+        // written out, here and where it is as often: closures of `array::map` are not inlined
+        [
+            self.origin[0] + self.step * node[0] as f64,
+            self.origin[1] + self.step * node[1] as f64,
+            self.origin[2] + self.step * node[2] as f64,
+        ]
     }
 
     pub(crate) fn count(&self) -> usize {
@@ -134,8 +140,10 @@ impl Lattice {
 }
 
 /// Where the n-th node of a tile is, along the Morton curve (Morton 1966).
+#[inline(always)]
 fn morton(n: usize) -> [usize; 3] {
-    [0, 1, 2].map(|k| (0..3).map(|bit| (n >> (3 * bit + k) & 1) << bit).sum())
+    let every_third = |n: usize| n & 1 | n >> 2 & 2 | n >> 4 & 4;
+    [every_third(n), every_third(n >> 1), every_third(n >> 2)]
 }
 
 impl Nearest {
@@ -187,26 +195,36 @@ impl Nearest {
         let mut columns = [[0.0_f32; 16]; 3];
         let mut farthest = [0.0_f32; 16];
         let mut best = [NONE; 16];
-        for first in (0..NODES).step_by(wide) {
+        let start = [ranges[0].start, ranges[1].start, ranges[2].start];
+        let last = [
+            ranges[0].end - 1 - start[0],
+            ranges[1].end - 1 - start[1],
+            ranges[2].end - 1 - start[2],
+        ];
+        let place = |at: [usize; 3]| {
+            let p = lattice.at([start[0] + at[0], start[1] + at[1], start[2] + at[2]]);
+            v::scale(v::sub(p, self.centre), self.scale)
+        };
+        let mut first = 0;
+        while first < NODES {
             let mut places = [[0; 3]; 16];
             let mut any = false;
             for lane in 0..wide {
-                let at = morton(first + lane);
-                any |= (0..3).all(|k| ranges[k].start + at[k] < ranges[k].end);
+                let [x, y, z] = morton(first + lane);
+                any |= x <= last[0] && y <= last[1] && z <= last[2];
                 // beyond the grid its last nodes stand in
-                places[lane] = [0, 1, 2].map(|k| at[k].min(ranges[k].end - 1 - ranges[k].start));
-            }
-            if !any {
-                continue;
-            }
-            for lane in 0..wide {
-                let at = places[lane];
-                let p = lattice.at([0, 1, 2].map(|k| ranges[k].start + at[k]));
-                for k in 0..3 {
-                    columns[k][lane] = ((p[k] - self.centre[k]) * self.scale) as f32;
-                }
+                let at = [x.min(last[0]), y.min(last[1]), z.min(last[2])];
+                let p = place(at);
+                columns[0][lane] = p[0] as f32;
+                columns[1][lane] = p[1] as f32;
+                columns[2][lane] = p[2] as f32;
                 let known = f64::from(values[index(at)]) * self.scale;
                 farthest[lane] = (known * known).min(1e30) as f32;
+                places[lane] = at;
+            }
+            first += wide;
+            if !any {
+                continue;
             }
             self.nearest(simd, &columns, &farthest, seeds, &mut best);
             for lane in 0..wide {
@@ -214,10 +232,8 @@ impl Nearest {
                 if found == NONE {
                     continue;
                 }
-                let p = lattice.at([0, 1, 2].map(|k| ranges[k].start + at[k]));
-                let p = v::scale(v::sub(p, self.centre), self.scale);
                 let number = self.faces[found as usize].number;
-                let d = self.exact[number as usize].distance2(p).sqrt();
+                let d = self.exact[number as usize].distance2(place(at)).sqrt();
                 let value = &mut values[index(at)];
                 *value = value.min((d / self.scale) as f32);
             }

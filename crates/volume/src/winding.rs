@@ -12,8 +12,8 @@ type Triangle = [[f64; 3]; 3];
 
 /// The solid angle of a triangle over 4 pi, seen from a place: positive where the place is behind it (van Oosterom and Strackee 1983).
 pub(crate) fn angle(p: [f64; 3], t: &Triangle) -> f64 {
-    let [a, b, c] = t.map(|q| v::sub(q, p));
-    let [x, y, z] = [a, b, c].map(v::length);
+    let (a, b, c) = (v::sub(t[0], p), v::sub(t[1], p), v::sub(t[2], p));
+    let (x, y, z) = (v::length(a), v::length(b), v::length(c));
     let above = v::dot(a, v::cross(b, c));
     let below = x * y * z + v::dot(a, b) * z + v::dot(b, c) * x + v::dot(c, a) * y;
     above.atan2(below) / (2.0 * std::f64::consts::PI)
@@ -175,10 +175,11 @@ impl Winding {
                 continue;
             };
             let b = &node.bounds;
-            let d = [0, 1, 2].map(|k| {
+            let mut d = [0.0; 3];
+            for k in 0..3 {
                 let (low, high) = (f64::from(b.low[k]), f64::from(b.high[k]));
-                (low - p[k]).max(p[k] - high).max(0.0)
-            });
+                d[k] = (low - p[k]).max(p[k] - high).max(0.0);
+            }
             if v::length(d) > radius {
                 continue;
             }
