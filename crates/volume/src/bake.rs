@@ -208,7 +208,7 @@ impl Bake {
 }
 
 /// Distances without a sign: the smaller of what is in `values` and what is nearest. `share` is the part of all work that this is.
-fn unsigned(
+pub(crate) fn unsigned(
     nearest: &Nearest,
     lattice: &Lattice,
     values: &mut [f32],

@@ -1,4 +1,4 @@
-//! Sampled fields: meshes as grids of distances, and the files that both come in.
+//! Sampled fields: meshes as grids of distances, distance transforms of pictures and volumes, and the files that they come in.
 //!
 //! A mesh is [read](read::read), [looked through](check::mend) and [baked](bake::Bake::bake) into a [`Volume`](volume::Volume):
 //! signed distances at the nodes of a grid, which a scene takes as a field like any other.
@@ -28,8 +28,11 @@ pub mod bake;
 mod bvh;
 pub mod check;
 mod crossing;
+pub mod file;
 pub mod mesh;
 mod nearest;
+pub mod outline;
 pub mod read;
+pub mod transform;
 pub mod volume;
 mod winding;
