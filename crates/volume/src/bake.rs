@@ -207,6 +207,48 @@ impl Bake {
     }
 }
 
+/// A field's values at the nodes of a grid around a box, on all cores: `make` makes what finds them for some points, once a layer.
+///
+/// # Errors
+/// Voxels that do not fit, values that are no numbers, or the watcher stopped it.
+pub fn sample<E: FnMut(&[[f32; 3]], &mut [f32])>(
+    bake: &Bake,
+    bounds: [[f32; 3]; 2],
+    watch: &dyn Watch,
+    make: impl Fn() -> E + Sync,
+) -> Result<Volume, BakeError> {
+    let lattice = bake.lattice(bounds)?;
+    let [nx, ny, nz] = lattice.nodes;
+    let band = (bake.band).map_or(f32::MAX, |cells| (cells.max(1.0) * lattice.step) as f32);
+    let mut values = vec![0.0_f32; lattice.count()];
+    let done = std::sync::atomic::AtomicUsize::new(0);
+    values
+        .par_chunks_mut(nx * ny)
+        .enumerate()
+        .try_for_each(|(k, layer)| {
+            if watch.is_stopped() {
+                return Err(BakeError::Stopped);
+            }
+            let points: Vec<[f32; 3]> = (0..nx * ny)
+                .map(|i| lattice.at([i % nx, i / nx, k]).map(|x| x as f32))
+                .collect();
+            make()(&points, layer);
+            for x in layer.iter_mut() {
+                *x = x.clamp(-band, band);
+            }
+            let before = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            watch.advance((before + 1) as f64 / nz as f64);
+            Ok(())
+        })?;
+    Ok(Volume::new(
+        lattice.nodes.map(|n| n as u32),
+        lattice.origin,
+        [lattice.step; 3],
+        values,
+    )?
+    .with_background(bake.band.map(|_| band)))
+}
+
 /// Distances without a sign: the smaller of what is in `values` and what is nearest. `share` is the part of all work that this is.
 pub(crate) fn unsigned(
     nearest: &Nearest,

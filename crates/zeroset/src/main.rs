@@ -3,6 +3,7 @@
 mod args;
 mod backend;
 mod bench;
+mod cache;
 mod command;
 mod console;
 mod estimate;
@@ -96,6 +97,8 @@ fn run(command: &Command, console: &Console) -> Result<(), Failure> {
         Command::Export(args) => command::export::run(args, console),
         Command::Slice(args) => command::slice::run(args, console),
         Command::Fields(args) => command::fields::run(args, console),
+        Command::Bake(args) => command::bake::run(args, console),
+        Command::Edt(args) => command::bake::edt(args, console),
         Command::Compare(args) => command::compare::run(args, console),
         Command::Bench(args) => bench::run(args, console),
         #[cfg(feature = "gpu")]
