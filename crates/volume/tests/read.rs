@@ -206,7 +206,7 @@ fn a_cube_in_every_format() {
         let bounds = mesh.bounds();
         let check = is_cube(&name, mesh);
         let (side, low) = if format == MeshFormat::Glb {
-            (2.0, [5.0, 0.0, -2.0])
+            (2.0_f64, [5.0_f32, 0.0, -2.0])
         } else {
             (1.0, [0.0; 3])
         };

@@ -147,9 +147,8 @@ mod vdb {
     pub(super) const UPPER: (usize, usize) = (5, 7);
     pub(super) const LOWER: (usize, usize) = (4, 3);
     pub(super) const LEAF: usize = 3;
-    /// What is written of inactive values: none but the background, none but its negative, which of both each is.
+    /// What is written of inactive values: none but the background (1: none but its negative), one value, which of both each is.
     pub(super) const ALL_BACKGROUND: i8 = 0;
-    pub(super) const ALL_NEGATIVE: i8 = 1;
     pub(super) const ONE: i8 = 2;
     pub(super) const EITHER: i8 = 3;
     pub(super) const EITHER_OF_ONE: i8 = 4;

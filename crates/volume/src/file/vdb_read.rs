@@ -271,12 +271,12 @@ fn values(
     };
     let mut other = tree.background;
     if matches!(kind, vdb::ONE | vdb::EITHER_OF_ONE | vdb::EITHER_OF_TWO) {
-        one = from.number(tree.half)?;
+        // of single precision even where the others are of half
+        one = from.f32()?;
         if kind == vdb::EITHER_OF_TWO {
-            other = from.number(tree.half)?;
+            other = from.f32()?;
         }
     }
-    let _ = vdb::ALL_NEGATIVE;
     let chosen = match kind {
         vdb::EITHER | vdb::EITHER_OF_ONE | vdb::EITHER_OF_TWO => {
             from.take(count / 8, WHERE)?.to_vec()
@@ -438,13 +438,6 @@ impl<'a> From<'a> {
 
     fn f32(&mut self) -> Result<f32, FileError> {
         Ok(f32::from_le_bytes(self.array("its values")?))
-    }
-
-    fn number(&mut self, is_half: bool) -> Result<f32, FileError> {
-        if is_half {
-            return Ok(half(u16::from_le_bytes(self.array("its values")?)));
-        }
-        self.f32()
     }
 
     fn three(&mut self) -> Result<[f64; 3], FileError> {

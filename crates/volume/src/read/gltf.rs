@@ -24,7 +24,17 @@ pub(super) fn read(bytes: &[u8], soup: &mut Soup, beside: Beside<'_>) -> Result<
             clean(&e.to_string())
         ))
     };
-    let root = gltf::json::deserialize::from_slice(json).map_err(|e| unreadable(&e))?;
+    let root: gltf::json::Root =
+        gltf::json::deserialize::from_slice(json).map_err(|e| unreadable(&e))?;
+    // gltf-json looks an accessor up before it checks that there is one
+    let count = root.accessors.len();
+    let primitives = root.meshes.iter().flat_map(|m| &m.primitives);
+    let mut used = primitives.flat_map(|p| p.attributes.values());
+    if used.any(|accessor| accessor.value() >= count) {
+        return Err(unreadable(
+            &"an attribute has an accessor that is not there",
+        ));
+    }
     let document = Document::from_json(root).map_err(|e| unreadable(&e))?;
     let needed: Vec<&str> = (document.extensions_required())
         .filter(|name| name.contains("compression") || name.contains("quantization"))

@@ -80,16 +80,19 @@ pub(crate) fn run(args: &BakeArgs, console: &Console) -> Result<(), Failure> {
     for (name, value) in &args.limit {
         limits.set(name, value).map_err(|e| usage(e.to_string()))?;
     }
+    // a file of OpenVDB is sparse by what is left out beyond its band
+    let band = match args.band {
+        Some(cells) if cells > 0.0 => Some(cells),
+        Some(_) => None,
+        None => (format == VolumeFormat::Vdb).then_some(3.0),
+    };
+    let default = Bake::default();
     let bake = Bake {
         voxels: args.voxels,
         sign: args.sign,
-        // a file of OpenVDB is sparse by what is left out beyond its band
-        band: match args.band {
-            Some(cells) if cells > 0.0 => Some(cells),
-            Some(_) => None,
-            None => (format == VolumeFormat::Vdb).then_some(3.0),
-        },
-        ..Bake::default()
+        band,
+        // all of the band has room around the surface
+        margin: band.map_or(default.margin, |cells| cells.min(1000.0).ceil() as u32 + 1),
     };
     let end = args.input.extension().and_then(|e| e.to_str());
     let (volume, mesh) = match end {
