@@ -161,8 +161,7 @@ fn split(bounds: &[Bounds], items: &mut [u32], in_half: bool) -> usize {
         ((x * BINS as f32) as usize).min(BINS - 1)
     };
     for k in 0..3 {
-        // also refuses what is no number
-        if in_half || !(centres.high[k] > centres.low[k]) {
+        if in_half || centres.high[k] <= centres.low[k] {
             continue;
         }
         let mut bins = [(Bounds::NONE, 0_usize); BINS];

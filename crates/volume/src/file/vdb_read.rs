@@ -286,7 +286,12 @@ fn values(
     let masked = tree.compression & vdb::ACTIVE_MASK != 0 && kind != vdb::EVERY;
     let stored = if masked { mask::count(active) } else { count };
     let size = if tree.half { 2 } else { 4 };
-    let bytes = from.packed(stored * size, tree.compression)?;
+    // of no numbers of half precision nothing is stored, not even how long it is
+    let bytes = if tree.half && stored == 0 {
+        Vec::new()
+    } else {
+        from.packed(stored * size, tree.compression)?
+    };
     let mut numbers = bytes.chunks_exact(size).map(|b| match b {
         [a, b, c, d] => f32::from_le_bytes([*a, *b, *c, *d]),
         [a, b] => half(u16::from_le_bytes([*a, *b])),

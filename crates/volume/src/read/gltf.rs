@@ -260,7 +260,7 @@ impl Reader<'_, '_> {
             .checked_mul(stride)
             .and_then(|n| n.checked_add(accessor.offset()))
             .and_then(|n| n.checked_add(size));
-        if !end.is_some_and(|end| end <= bytes.len()) {
+        if end.is_none_or(|end| end > bytes.len()) {
             return Err(bad("lies beyond its buffer"));
         }
         for i in 0..count {
