@@ -80,8 +80,7 @@ pub enum Node {
     },
     /// A free-form formula over x, y and z.
     Formula(Arc<Formula>),
-    /// A grid of samples. (Scenes have no word for it yet: it holds the renderers to the same grids.)
-    #[doc(hidden)]
+    /// A grid of samples, continued beyond its box.
     Sampled(Arc<Sampled>),
     /// The same field; its value turned around for rays inside it, see [`Program::inside`](crate::program::Program::inside).
     #[doc(hidden)]
@@ -490,15 +489,19 @@ impl Field {
         Field::new(Node::Formula(formula), facts)
     }
 
-    /// A grid of samples, continued beyond its box.
-    #[doc(hidden)]
+    /// A grid of samples, continued beyond its box: a mesh, a volume of a file, an image as a plane shape.
     pub fn sampled(sampled: Arc<Sampled>) -> Field {
+        let mut bounds = sampled.bounds();
+        if sampled.dimension() == Dimension::Two {
+            // a plane shape has no ends along z
+            (bounds.min[2], bounds.max[2]) = (f64::NEG_INFINITY, f64::INFINITY);
+        }
         let facts = Facts {
-            bounds: sampled.bounds(),
+            bounds,
             exactness: Exactness::Bound,
             slope: sampled.slope(),
             steep: true,
-            dimension: Dimension::Three,
+            dimension: sampled.dimension(),
             depth: 1,
             nodes: 1,
             materials: 0,

@@ -1,7 +1,7 @@
 //! What loading may take: bytes that are charged before they are asked for, and time.
 
 use crate::limits::{Limits, in_words};
-use web_time::Instant;
+use web_time::{Duration, Instant};
 
 /// The part of the limit `memory` that loading may take: the picture needs the rest, and a scene that ends in an error
 /// never needs a picture.
@@ -14,6 +14,8 @@ pub(crate) struct LoadBudget {
     memory: u64,
     start: Instant,
     seconds: f64,
+    /// What of the time went into sampling, which has a limit of its own.
+    sampled: Duration,
 }
 
 /// Why loading ends.
@@ -40,6 +42,7 @@ impl LoadBudget {
             memory: limits.memory / SHARE,
             start: Instant::now(),
             seconds: limits.seconds,
+            sampled: Duration::ZERO,
         }
     }
 
@@ -49,6 +52,17 @@ impl LoadBudget {
             held: self.held,
             ..LoadBudget::new(limits)
         }
+    }
+
+    /// Leaves time that sampling took out of what loading may take.
+    pub(crate) fn pause(&mut self, time: Duration) {
+        self.start += time;
+        self.sampled += time;
+    }
+
+    /// What sampling took so far.
+    pub(crate) fn sampled(&self) -> Duration {
+        self.sampled
     }
 
     /// When loading began.

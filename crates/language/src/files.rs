@@ -8,6 +8,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::io::{self, Cursor, Read};
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
+use zeroset_field::sampled::Sampled;
 use zeroset_scene::material::Image;
 
 /// Where a scene's files come from. Names are paths below it, with `/` between their parts and without detours.
@@ -167,6 +168,8 @@ pub(crate) struct Cache {
     /// Files by where they really are, so that each is read once under whatever names.
     bytes: HashMap<PathBuf, Arc<[u8]>>,
     images: HashMap<PathBuf, Arc<Image>>,
+    /// Samples by their file and by how they are made of it.
+    sampled: HashMap<(PathBuf, String), Arc<Sampled>>,
     pub(crate) assets: Assets,
 }
 
@@ -337,6 +340,34 @@ impl Reading {
         }
         self.cache.images.insert(real, image.clone());
         Ok(image)
+    }
+
+    /// Samples of a file below the folder, made once in each way.
+    pub(crate) fn sampled(
+        &mut self,
+        name: &str,
+        how: &str,
+        make: impl FnOnce(&mut Reading) -> Result<Arc<Sampled>, String>,
+    ) -> Result<Arc<Sampled>, String> {
+        let real = self.find(name).map_err(|e| e.to_string())?;
+        self.budget.check_clock().map_err(|e| e.to_string())?;
+        let key = (real, how.to_owned());
+        if let Some(sampled) = self.cache.sampled.get(&key) {
+            return Ok(sampled.clone());
+        }
+        let sampled = make(self)?;
+        self.cache.sampled.insert(key, sampled.clone());
+        Ok(sampled)
+    }
+
+    /// Charges samples, those of a file at most once.
+    pub(crate) fn hold_sampled(&mut self, name: &str, bytes: u64) -> Result<(), FileError> {
+        let real = self.find(name)?;
+        if self.charged.insert(real) {
+            self.budget
+                .hold(bytes, || format!("samples of \"{name}\""))?;
+        }
+        Ok(())
     }
 }
 

@@ -34,19 +34,9 @@ fn read(
     let bytes = files
         .read_at(real, name, limits.image_bytes, "image_bytes", &mut budget)
         .map_err(|e| text(&e))?;
-    let room = ImageLimits {
-        name,
-        most: limits.image_pixels,
-    };
     let path = Reading::normal(name).map_err(|e| text(&e))?;
     files.cache.assets.image(&path, &bytes, || {
-        let decoded = if bytes.starts_with(b"\x89PNG") {
-            png(&bytes, &room, &mut budget)?
-        } else if bytes.starts_with(&[0xff, 0xd8, 0xff]) {
-            jpeg(&bytes, &room, &mut budget)?
-        } else {
-            return Err(room.bad(&"it begins neither like a PNG nor like a JPEG file"));
-        };
+        let decoded = decode(&bytes, name, limits, &mut budget)?;
         let [width, height] = decoded.size;
         Ok(Image {
             path: path.clone(),
@@ -55,6 +45,61 @@ fn read(
             pixels: decoded.linear(),
         })
     })
+}
+
+fn decode(
+    bytes: &[u8],
+    name: &str,
+    limits: &Limits,
+    budget: &mut LoadBudget,
+) -> Result<Decoded, String> {
+    let room = ImageLimits {
+        name,
+        most: limits.image_pixels,
+    };
+    if bytes.starts_with(b"\x89PNG") {
+        png(bytes, &room, budget)
+    } else if bytes.starts_with(&[0xff, 0xd8, 0xff]) {
+        jpeg(bytes, &room, budget)
+    } else {
+        Err(room.bad(&"it begins neither like a PNG nor like a JPEG file"))
+    }
+}
+
+/// A linear number as sRGB has it (IEC 61966-2-1).
+fn encoded(x: f32) -> f32 {
+    if x <= 0.003_130_8 {
+        12.92 * x
+    } else {
+        1.055 * x.powf(1.0 / 2.4) - 0.055
+    }
+}
+
+/// The brightness of every pixel, 0 to 1, as a screen shows it: sRGB's of the luminance, over white where a pixel is see-through. With
+/// width and height.
+///
+/// # Errors
+/// What is wrong with the image, and what is allowed.
+pub(crate) fn brightness(
+    files: &mut Reading,
+    name: &str,
+    limits: &Limits,
+) -> Result<([usize; 2], Vec<f32>), String> {
+    let real = files.find(name).map_err(|e| e.to_string())?;
+    let mut budget = files.budget;
+    let bytes = files
+        .read_at(&real, name, limits.image_bytes, "image_bytes", &mut budget)
+        .map_err(|e| e.to_string())?;
+    let decoded = decode(&bytes, name, limits, &mut budget)?;
+    let size = [decoded.size[0] as usize, decoded.size[1] as usize];
+    let colours = decoded.linear();
+    let shown = (colours.iter().zip(decoded.opacities())).map(|(c, opacity)| {
+        // Rec. 709
+        let luminance = 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
+        let over_white = 1.0 + opacity * (luminance - 1.0);
+        encoded(over_white)
+    });
+    Ok((size, shown.collect()))
 }
 
 /// An image for messages.
@@ -165,6 +210,20 @@ static CHANNELS: LazyLock<Vec<f32>> = LazyLock::new(|| {
 });
 
 impl Decoded {
+    /// How opaque each pixel is, 0 to 1.
+    fn opacities(&self) -> impl Iterator<Item = f32> {
+        let width = if self.wide { 2 } else { 1 };
+        let clear = self.channels % 2 == 0;
+        self.bytes
+            .chunks_exact(self.channels * width)
+            .map(move |pixel| match &pixel[(self.channels - 1) * width..] {
+                _ if !clear => 1.0,
+                [high, low] => f32::from(u16::from_be_bytes([*high, *low])) / 65_535.0,
+                [x, ..] => f32::from(*x) / 255.0,
+                [] => 1.0,
+            })
+    }
+
     /// The pixels in linear colours. What is see-through counts as its colour.
     fn linear(&self) -> Vec<Vec3> {
         let width = if self.wide { 2 } else { 1 };

@@ -42,6 +42,7 @@ mod lines;
 pub mod load;
 pub mod naming;
 pub mod report;
+mod sampled;
 pub mod starlark;
 mod trees;
 #[allow(

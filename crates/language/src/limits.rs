@@ -32,6 +32,14 @@ pub struct Limits {
     pub image_bytes: u64,
     /// Pixels of one image.
     pub image_pixels: u64,
+    /// Bytes of one file of a mesh or of samples.
+    pub mesh_bytes: u64,
+    /// Vertices and triangles of one mesh.
+    pub mesh_faces: u64,
+    /// Samples of one mesh or volume.
+    pub grid_samples: u64,
+    /// Seconds that sampling the meshes of a scene may take, beside those of loading.
+    pub sampling_seconds: f64,
     /// Bytes of memory of a picture and of what it takes to make it; loading may take an eighth of them.
     pub memory: u64,
     /// Characters of a name: of the scene, an object, a parameter.
@@ -54,6 +62,10 @@ impl Default for Limits {
             file_bytes: 16 << 20,
             image_bytes: 32 << 20,
             image_pixels: 4 << 20,
+            mesh_bytes: 128 << 20,
+            mesh_faces: 4 << 20,
+            grid_samples: 16 << 20,
+            sampling_seconds: 120.0,
             memory: 2 << 30,
             name: 200,
         }
@@ -106,6 +118,13 @@ pub const LIMITS: &[Limit] = &[
     limit!(file_bytes, "bytes of one scene file"),
     limit!(image_bytes, "bytes of one image file"),
     limit!(image_pixels, "pixels of one image"),
+    limit!(mesh_bytes, "bytes of one file of a mesh or of samples"),
+    limit!(mesh_faces, "vertices and triangles of one mesh"),
+    limit!(grid_samples, "samples of one mesh or volume"),
+    limit!(
+        sampling_seconds,
+        "seconds that sampling the meshes of a scene may take"
+    ),
     limit!(
         memory,
         "bytes of memory of a picture; loading may take an eighth of them"
@@ -165,6 +184,10 @@ impl Limits {
         file_bytes: u64::MAX,
         image_bytes: u64::MAX,
         image_pixels: u64::MAX,
+        mesh_bytes: u64::MAX,
+        mesh_faces: u64::MAX,
+        grid_samples: u64::MAX,
+        sampling_seconds: f64::INFINITY,
         memory: u64::MAX,
         name: u64::MAX,
     };

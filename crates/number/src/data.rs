@@ -126,9 +126,16 @@ impl Grid {
     /// The sample at a node; coordinates beyond the grid count as its last ones.
     #[inline(always)]
     pub fn at(&self, node: [usize; 3]) -> f32 {
-        let [i, j, k] = [0, 1, 2].map(|axis| node[axis].min(self.nodes[axis] as usize - 1));
-        let [nx, ny, _] = self.nodes.map(|n| n as usize);
-        self.values[i + nx * (j + ny * k)]
+        // written out: closures of `array::map` are not inlined
+        let nodes = [
+            self.nodes[0] as usize,
+            self.nodes[1] as usize,
+            self.nodes[2] as usize,
+        ];
+        let i = node[0].min(nodes[0] - 1);
+        let j = node[1].min(nodes[1] - 1);
+        let k = node[2].min(nodes[2] - 1);
+        self.values[i + nodes[0] * (j + nodes[1] * k)]
     }
 
     fn steepest_along(&self, axis: usize) -> f32 {

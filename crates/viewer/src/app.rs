@@ -73,7 +73,7 @@ impl App {
             let ctx = ctx.clone();
             move || ctx.request_repaint()
         };
-        let loader = Loader::start(open.scene, open.options, open.explain, wake())?;
+        let loader = Loader::start(open.scene, open.options, open.explain, open.assets, wake())?;
         let engine = Engine::start(open.renderer, wake())?;
         Ok(App {
             engine: Some(engine),

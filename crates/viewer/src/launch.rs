@@ -5,6 +5,7 @@ use crate::engine::MakeRenderer;
 use crate::loader::Explain;
 use eframe::egui::{ViewportBuilder, vec2};
 use std::path::PathBuf;
+use zeroset_language::assets::Assets;
 use zeroset_language::load::Options;
 use zeroset_output::display::{NAME, name};
 
@@ -18,6 +19,8 @@ pub struct Open {
     pub renderer: MakeRenderer,
     /// What a person is told of a scene that cannot be loaded.
     pub explain: Explain,
+    /// What scenes take from files, and where what took long is kept.
+    pub assets: Assets,
 }
 
 /// Why there is no window.

@@ -41,12 +41,13 @@ impl Loader {
         path: PathBuf,
         options: Options,
         explain: Explain,
+        assets: Assets,
         wake: impl Fn() + Send + 'static,
     ) -> std::io::Result<Loader> {
         let (ask, asked) = channel();
         let (tell, outcomes) = channel();
         let work = move || {
-            let mut watcher = Watcher::new(path, options, explain);
+            let mut watcher = Watcher::new(path, options, explain, assets);
             while let Some(outcome) = watcher.next(&asked) {
                 if tell.send(outcome).is_err() {
                     return;
@@ -90,14 +91,14 @@ struct Watcher {
 }
 
 impl Watcher {
-    fn new(path: PathBuf, options: Options, explain: Explain) -> Watcher {
+    fn new(path: PathBuf, options: Options, explain: Explain, assets: Assets) -> Watcher {
         Watcher {
             watched: Watched::of([path.clone()]),
             path,
             options,
             explain,
             is_first: true,
-            assets: Assets::default(),
+            assets,
             document: None,
         }
     }
@@ -205,7 +206,8 @@ mod tests {
         let path = folder.path().join("scene.star");
         std::fs::write(&path, text).unwrap();
         let set = Options::default();
-        let loader = Loader::start(path.clone(), set, |f| f.to_string(), || {}).unwrap();
+        let assets = Assets::default();
+        let loader = Loader::start(path.clone(), set, |f| f.to_string(), assets, || {}).unwrap();
         (folder, path, loader)
     }
 

@@ -76,6 +76,10 @@ pub(crate) enum Command {
     Fields(FieldsArgs),
     /// Draw a section through a scene's distance field, with lines of equal distance
     Slice(SliceArgs),
+    /// Sample a mesh or a scene as signed distances on a grid, and write it as OpenVDB or NRRD
+    Bake(BakeArgs),
+    /// Draw the signed distance transform of a picture, as Evans 2006, figure 3
+    Edt(EdtArgs),
     /// Say how different pictures are from another one: RMSE, PSNR, SSIM and FLIP
     Compare(CompareArgs),
     /// Say how near each occlusion method is to sampled occlusion in a scene, and with which numbers it is nearest
@@ -349,6 +353,69 @@ pub(crate) struct SliceArgs {
     /// Leave out the strip that explains the colours
     #[arg(long)]
     pub no_legend: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct BakeArgs {
+    /// A mesh (.obj, .ply, .stl, .gltf or .glb) or a scene (.star or .json)
+    #[arg(value_name = "MESH|SCENE", value_hint = ValueHint::FilePath)]
+    pub input: PathBuf,
+    /// The file: .vdb (OpenVDB) or .nrrd
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub output: PathBuf,
+    /// Cells along the longest side
+    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(8..=2047))]
+    pub voxels: u32,
+    /// Cells from the surface beyond which distances end; 0 keeps them all. Default: 3 in OpenVDB, all in NRRD
+    #[arg(long, value_name = "CELLS", value_parser = crate::values::cells)]
+    pub band: Option<f64>,
+    /// What is inside of a mesh: parity (of rays), winding (number above 1/2), or auto
+    #[arg(long, value_name = "HOW", default_value = "auto", value_parser = crate::values::sign)]
+    pub sign: zeroset_volume::bake::Sign,
+    /// Print what was found as JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Set a parameter of the scene (slider, choice, toggle or color); can be given many times
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment, help_heading = "Scene")]
+    pub set: Vec<(String, String)>,
+    /// What time() is in the scene, seconds
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value_t = 0.0,
+        allow_negative_numbers = true,
+        value_parser = crate::values::seconds,
+        help_heading = "Scene"
+    )]
+    pub time: f64,
+    /// Change a limit on what a scene or a mesh may cost; can be given many times. `zeroset fields limits` lists them
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment, help_heading = "Scene")]
+    pub limit: Vec<(String, String)>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct EdtArgs {
+    /// The picture: PNG or OpenEXR
+    #[arg(value_name = "IMAGE", value_hint = ValueHint::FilePath)]
+    pub image: PathBuf,
+    /// The picture of distances: .png
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub output: PathBuf,
+    /// What is near: euclidean, city-block or chessboard
+    #[arg(long, value_name = "METRIC", default_value = "euclidean", value_parser = crate::values::metric)]
+    pub metric: zeroset_volume::transform::Metric,
+    /// How it is found: exact, brute, chamfer or dead-reckoning
+    #[arg(long, value_name = "METHOD", default_value = "exact", value_parser = crate::values::transform)]
+    pub method: zeroset_volume::transform::Method,
+    /// The brightness from which on a pixel is inside, 0 to 1
+    #[arg(long, value_name = "LEVEL", default_value_t = 0.5)]
+    pub level: f32,
+    /// What is darker is inside
+    #[arg(long)]
+    pub dark: bool,
+    /// Leave the red line at the boundary out
+    #[arg(long)]
+    pub plain: bool,
 }
 
 #[derive(Debug, Args)]

@@ -189,6 +189,12 @@ impl Console {
         self.bar_of(label, template, |style| style)
     }
 
+    /// A bar for work that is counted in shares.
+    pub(crate) fn working_bar(&self, label: &str) -> ProgressBar {
+        let template = "{prefix} {bar:32} {percent:>3} %  {eta} left";
+        self.bar_of(label, template, |style| style)
+    }
+
     fn bar_of(
         &self,
         label: &str,

@@ -3,6 +3,7 @@
 mod args;
 mod backend;
 mod bench;
+mod cache;
 mod command;
 mod console;
 mod estimate;
@@ -99,6 +100,8 @@ fn run(command: &Command, console: &Console) -> Result<(), Failure> {
         Command::Slice(args) => command::slice::run(args, console),
         Command::Fields(args) => command::fields::run(args, console),
         Command::FitAo(args) => command::fit_ao::run(args, console),
+        Command::Bake(args) => command::bake::run(args, console),
+        Command::Edt(args) => command::bake::edt(args, console),
         Command::Compare(args) => command::compare::run(args, console),
         Command::Bench(args) => bench::run(args, console),
         #[cfg(feature = "gpu")]

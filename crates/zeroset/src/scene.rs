@@ -1,13 +1,13 @@
 //! From the command line's words about a scene to the scene.
 
 use crate::args::SceneArgs;
+use crate::cache::assets;
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, Read};
 use std::path::Path;
-use zeroset_language::assets::Assets;
 use zeroset_language::document::Document;
 use zeroset_language::limits::Limits;
 use zeroset_language::load::{Failed, Loaded, Options};
@@ -108,7 +108,7 @@ pub(crate) fn loaded(
 /// Reads the scene, to load it more than once.
 pub(crate) fn document(args: &SceneArgs, options: &Options) -> Result<Document, Failure> {
     present(args)?;
-    let document = Document::open(&args.scene, &options.limits, &Assets::default());
+    let document = Document::open(&args.scene, &options.limits, &assets());
     Ok(document?)
 }
 
@@ -118,7 +118,7 @@ pub(crate) fn attempt(
     options: &Options,
     console: &Console,
 ) -> Result<Loaded, Failed> {
-    let mut document = Document::open(&args.scene, &options.limits, &Assets::default())?;
+    let mut document = Document::open(&args.scene, &options.limits, &assets())?;
     evaluated(args, &mut document, options, console)
 }
 

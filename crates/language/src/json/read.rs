@@ -3,28 +3,33 @@
 use super::parse::parse;
 use super::valid;
 use super::{JsonStep, KEY, NAME, Problem, Read, VERSION, angle_name, is_angle, problem};
+use crate::assets::Assets;
 use crate::budget::LoadBudget;
 use crate::draft::{CameraDraft, Draft};
+use crate::files::Reading;
 use crate::framing;
 use crate::images;
 use crate::limits::Limits;
 use crate::naming::shortened;
 use crate::report::{Report, Source, suggestion};
+use crate::sampled;
 use crate::starlark::{direction_of_word, spoken};
 use glam::{DMat3, DVec3};
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 use std::sync::Arc;
 use zeroset_catalogue::entries::catalogue;
-use zeroset_catalogue::{Dimension, Info, Kind, Param, Unit};
+use zeroset_catalogue::{Dimension, Info, Kind, LARGE, Param, SMALL, Unit};
 use zeroset_field::field::{Field, FieldError, Paint};
 use zeroset_field::placement::Placement;
 use zeroset_field::repetition::{Polar, Repetition};
+use zeroset_field::sampled::Source as SampledSource;
 use zeroset_scene::colour;
 use zeroset_scene::light::{Light, Sky};
 use zeroset_scene::material::{Material, Pattern};
 use zeroset_scene::scene::Object;
 use zeroset_scene::settings::{Occlusion, Settings};
+use zeroset_volume::bake::Bake;
 
 type Members = Map<String, Value>;
 
@@ -39,10 +44,14 @@ pub(crate) fn read(draft: &mut Draft, limits: &Limits) -> Result<(), Box<Report>
         materials: 0,
         limits: *limits,
         budget: draft.files.budget,
+        files: None,
     };
-    reader
-        .scene(&value, draft, &source)
-        .map_err(|p| Box::new(p.report(&source)))
+    let result = reader.scene(&value, draft, &source);
+    // also where the scene is refused: what it asked for is watched
+    if let Some(files) = reader.files.take() {
+        draft.files = files;
+    }
+    result.map_err(|p| Box::new(p.report(&source)))
 }
 
 /// Fields, references to parts and materials between two looks at the clock.
@@ -58,6 +67,8 @@ struct Reader {
     limits: Limits,
     /// For the clock; what is held is charged to that of the draft.
     budget: LoadBudget,
+    /// The draft's, while fields are read.
+    files: Option<Reading>,
 }
 
 /// The members of an object, none of them unknown.
@@ -229,6 +240,8 @@ impl Reader {
         })?;
         draft.materials = materials.unwrap_or_default();
         self.materials = draft.materials.len();
+        let none = Reading::new(None, 0, self.budget, &Assets::default());
+        self.files = Some(std::mem::replace(&mut draft.files, none));
         member(map, "parts", |v| {
             for (i, part) in list(v, "parts")?.iter().enumerate() {
                 let field = self.field(part).map_err(|p| p.within(JsonStep::Index(i)))?;
@@ -260,6 +273,9 @@ impl Reader {
                 .collect::<Read<Vec<Object>>>()
         })?;
         draft.objects = objects.unwrap_or_default();
+        if let Some(files) = self.files.take() {
+            draft.files = files;
+        }
         if draft.objects.is_empty() {
             return Err(problem("the scene shows nothing")
                 .help("an object is {\"field\": {\"sphere\": {}}}"));
@@ -501,17 +517,71 @@ impl Reader {
                 self.check_clock()?;
                 Ok(Field::formula(Arc::new(super::formula::read(map)?)))
             }
+            "mesh" => {
+                let map = members(body, "mesh", &["file", "voxels", "sign"])?;
+                let file = file(map)?;
+                let voxels = member(map, "voxels", |v| count(v, Bake::MOST))?.unwrap_or(64);
+                let sign = member(map, "sign", |v| {
+                    let known = |word: &&str| sampled::SIGNS.iter().any(|s| s.0 == *word);
+                    let word = v.as_str().filter(known);
+                    word.map(str::to_owned)
+                        .ok_or_else(|| problem("this must be \"auto\", \"parity\" or \"winding\""))
+                })?;
+                let sign = sign.unwrap_or_else(|| "auto".to_owned());
+                self.sampled(&SampledSource::Mesh { file, voxels, sign })
+            }
+            "grid" => {
+                let map = members(body, "grid", &["file"])?;
+                self.sampled(&SampledSource::Grid { file: file(map)? })
+            }
+            "image_shape" => {
+                let map = members(body, "image_shape", &["file", "width", "level"])?;
+                let within = |least: f64, most: f64| {
+                    move |v: &Value| {
+                        let x = number(v)?;
+                        if (least..=most).contains(&x) {
+                            return Ok(x);
+                        }
+                        let (least, most) = (spoken(least), spoken(most));
+                        Err(problem(format!(
+                            "this is {}, allowed is {least} to {most}",
+                            spoken(x)
+                        )))
+                    }
+                };
+                self.sampled(&SampledSource::Image {
+                    file: file(map)?,
+                    width: member(map, "width", within(SMALL, LARGE))?.unwrap_or(1.0),
+                    level: member(map, "level", within(0.001, 0.999))?.unwrap_or(0.5),
+                })
+            }
             _ => {
-                let names: Vec<&str> = all
-                    .infos()
-                    .map(|i| i.name)
-                    .chain(["place", "repeat", "polar", "paint", "formula", "part"])
-                    .collect();
+                let own = [
+                    "place",
+                    "repeat",
+                    "polar",
+                    "paint",
+                    "formula",
+                    "mesh",
+                    "grid",
+                    "image_shape",
+                    "part",
+                ];
+                let names: Vec<&str> = all.infos().map(|i| i.name).chain(own).collect();
                 let help = suggestion(name, names.iter().copied());
                 let name = shortened(name, KEY);
                 Err(problem(format!("there is no field `{name}`")).maybe_help(help))
             }
         }
+    }
+
+    /// A field of samples.
+    fn sampled(&mut self, source: &SampledSource) -> Read<Field> {
+        let files = (self.files.as_mut()).ok_or_else(|| problem("no files can be read here"))?;
+        let made = sampled::load(files, source, &self.limits);
+        let (samples, taken) = made.map_err(|m| problem(m).at("file"))?;
+        self.budget.pause(taken);
+        Ok(Field::sampled(samples))
     }
 
     /// The field under `of`.
@@ -521,6 +591,15 @@ impl Reader {
             .ok_or_else(|| problem("this needs `of`, a field"))?;
         self.field(of).map_err(|p| p.at("of"))
     }
+}
+
+/// The name of the file that a field is made of.
+fn file(map: &Members) -> Read<String> {
+    let text = |v: &Value| {
+        let name = v.as_str().map(str::to_owned);
+        name.ok_or_else(|| problem("this must be the name of a file"))
+    };
+    member(map, "file", text)?.ok_or_else(|| problem("this needs `file`, the name of a file"))
 }
 
 /// Whether the rows are those of a rotation or a mirror image.

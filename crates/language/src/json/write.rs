@@ -7,6 +7,7 @@ use std::collections::HashMap;
 use zeroset_catalogue::{Info, Kind, Unit};
 use zeroset_field::field::{Field, Node, Paint};
 use zeroset_field::placement::Placement;
+use zeroset_field::sampled::Source;
 use zeroset_scene::camera::{Camera, Lens, degrees_of};
 use zeroset_scene::scene::Scene;
 
@@ -31,12 +32,14 @@ impl ExpandError {
 /// The scene as JSON: everything that it is, every number exact.
 ///
 /// # Errors
-/// A number that is not finite or a field of samples, which JSON has no word for.
+/// A number that is not finite, or a field of samples that come from no file, which JSON has no word for.
 pub fn expand(scene: &Scene) -> Result<Value, ExpandError> {
     let mut writer = Writer::default();
     (scene.objects().iter()).for_each(|object| writer.count(&object.field));
     if writer.has_samples {
-        return Err(ExpandError::new("a field of samples has no word there"));
+        return Err(ExpandError::new(
+            "a field of samples that come from no file has no word there",
+        ));
     }
     let objects: Vec<Value> = (scene.objects().iter())
         .map(|object| {
@@ -135,7 +138,7 @@ struct Writer {
     /// Parts written already, by node.
     places: HashMap<usize, usize>,
     parts: Vec<Value>,
-    /// Whether any node is a grid of samples.
+    /// Whether any node is a grid of samples that come from no file.
     has_samples: bool,
 }
 
@@ -145,7 +148,9 @@ impl Writer {
         let uses = self.uses.entry(field.key()).or_default();
         *uses += 1;
         if *uses == 1 {
-            self.has_samples |= matches!(field.node(), Node::Sampled(_));
+            // those of a file are told by its name
+            self.has_samples |=
+                matches!(field.node(), Node::Sampled(samples) if samples.source().is_none());
             field.children().iter().for_each(|c| self.count(c));
         }
     }
@@ -223,11 +228,39 @@ impl Writer {
                 ("paint", body)
             }
             Node::Formula(formula) => ("formula", super::formula::write(formula)),
-            // refused before: see `expand`
-            Node::Sampled(_) | Node::Sided(_) => return Value::Null,
+            Node::Sampled(samples) => match samples.source() {
+                Some(source) => of_file(source),
+                // refused before: see `expand`
+                None => return Value::Null,
+            },
+            Node::Sided(_) => return Value::Null,
         };
         json!({ name: body })
     }
+}
+
+/// Samples of a file.
+fn of_file(source: &Source) -> (&'static str, Map<String, Value>) {
+    let mut body = Map::new();
+    let name = match source {
+        Source::Mesh { file, voxels, sign } => {
+            body.insert("file".into(), json!(file));
+            body.insert("voxels".into(), json!(voxels));
+            body.insert("sign".into(), json!(sign));
+            "mesh"
+        }
+        Source::Grid { file } => {
+            body.insert("file".into(), json!(file));
+            "grid"
+        }
+        Source::Image { file, width, level } => {
+            body.insert("file".into(), json!(file));
+            body.insert("width".into(), json!(width));
+            body.insert("level".into(), json!(level));
+            "image_shape"
+        }
+    };
+    (name, body)
 }
 
 fn place(placement: &Placement, of: Value) -> Map<String, Value> {

@@ -158,6 +158,11 @@ impl<'a> Machine<'a> {
         }
     }
 
+    /// Leaves time out of what the script may take, as that of sampling, which has a limit of its own.
+    pub(crate) fn pause(&mut self, time: Duration) {
+        self.start += time;
+    }
+
     /// Charges steps, before they are taken.
     #[inline]
     pub(crate) fn charge(&mut self, steps: u64) -> Run<()> {

@@ -16,7 +16,7 @@
 //! | `run`, `calls`, `operators`, `sequences`, `text` | the language itself |
 //! | `builtins`, `methods`, `math` | everyday functions |
 //! | `fields`, `place` | the catalogue as functions and methods |
-//! | `formulas`, `lettering` | fields from formulas and from letters |
+//! | `formulas`, `lettering`, `sampling` | fields from formulas, from letters and from files |
 //! | `materials`, `stage`, `rendering`, `parameters` | everything else of a scene |
 
 mod builtins;
@@ -38,6 +38,7 @@ mod parameters;
 mod place;
 mod rendering;
 mod run;
+mod sampling;
 mod scope;
 mod sequences;
 mod stage;
@@ -70,6 +71,7 @@ fn natives() -> impl Iterator<Item = &'static Native> {
         stage::ALL,
         rendering::all(),
         parameters::ALL,
+        sampling::ALL,
     ]
     .into_iter()
     .flatten()

@@ -18,6 +18,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<(), Failure> {
         options,
         renderer: renderer(args)?,
         explain: |failed| plain_report(failed.report.as_ref()),
+        assets: crate::cache::assets(),
     };
     open(window).map_err(|error| Failure::with_help(Exit::Job, error.to_string(), error.advice()))
 }
