@@ -483,10 +483,7 @@ fn every_method_can_be_written() {
     );
     each::<Filter>(
         |m| format!("show(sphere())\nrender(aa = supersample(filter = {m}))"),
-        |s| match s.settings().antialias {
-            Antialias::Supersample { filter, .. } => filter,
-            Antialias::None => panic!("no filter"),
-        },
+        |s| s.settings().antialias.filter().expect("a filter"),
     );
 }
 
