@@ -247,7 +247,7 @@ mod tests {
             }
         }
         assert_eq!(corners(2).count(), 25);
-        assert_eq!(corners(0).collect::<Vec<_>>(), [vec![]; 1]);
+        assert_eq!(corners(0).map(|c| c.len()).collect::<Vec<_>>(), [0]);
         let bent = Occlusion::named("bent").unwrap_or_default();
         assert_eq!(
             written(&bent),

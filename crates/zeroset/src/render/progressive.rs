@@ -372,9 +372,10 @@ fn identity(
     Ok(Identity::default()
         .with("version", env!("CARGO_PKG_VERSION"))
         .with("size", format!("{width}x{height}"))
+        // how far a camera sees follows from the scene: which of both changed is to be said
+        .with("scene", format!("{:016x}", digest.0))
         .with("camera", json::line(&camera)?)
         .with("settings", json::line(&settings)?)
-        .with("scene", format!("{:016x}", digest.0))
         .with("renderer", used.adapter().unwrap_or("CPU"))
         .with("planes", names.join(" ")))
 }
