@@ -89,9 +89,18 @@ fn main() -> Result<(), Box<dyn Error>> {
                 let ends = [nodes[a].min(nodes[b]), nodes[a].max(nodes[b])];
                 *cuts.entry(ends).or_insert_with(|| {
                     let [p, q] = ends.map(place);
-                    let (f, g) = (hare(p), hare(q));
-                    // not at a node, where faces would have no area
-                    let t = (f / (f - g)).clamp(0.05, 0.95);
+                    let along = |t: f64| [0, 1, 2].map(|k| p[k] + t * (q[k] - p[k]));
+                    // where the sign changes, by halves; not at a node, where faces would have no area
+                    let (mut low, mut high) = (0.0, 1.0);
+                    for _ in 0..20 {
+                        let t = 0.5 * (low + high);
+                        if (hare(along(t)) < 0.0) == (hare(p) < 0.0) {
+                            low = t;
+                        } else {
+                            high = t;
+                        }
+                    }
+                    let t = low.clamp(0.05, 0.95);
                     vertices.push([0, 1, 2].map(|k| (p[k] + t * (q[k] - p[k])) as f32));
                     vertices.len() as u32 - 1
                 })
