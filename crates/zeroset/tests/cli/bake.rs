@@ -56,7 +56,7 @@ fn meshes_and_scenes_become_files_that_scenes_take() {
             "neither in .vdb nor in .nrrd",
         ),
         ("bake none.obj -o cube.vdb", 4, "none.obj"),
-        ("bake scene.txt -o cube.vdb", 2, "the formats that are read"),
+        ("bake scene.txt -o cube.vdb", 2, "none of .obj, .ply"),
         ("bake cube.obj -o cube.vdb --voxels 5", 2, "8..=2047"),
         ("bake cube.obj -o cube.vdb --voxels 2000", 2, "grid_samples"),
         (
