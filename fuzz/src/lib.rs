@@ -2,6 +2,7 @@
 //! to JSON and back unchanged, and what is rendered is finite.
 
 pub mod nest;
+pub mod samples;
 
 use std::sync::LazyLock;
 use std::time::{Duration, Instant};

@@ -96,8 +96,8 @@ pub(crate) fn brightness(
     let shown = (colours.iter().zip(decoded.opacities())).map(|(c, opacity)| {
         // Rec. 709
         let luminance = 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
-        let over_white = 1.0 + opacity * (luminance - 1.0);
-        encoded(over_white)
+        // mixed as drawing programs do, so that what is half clear is half as bright
+        1.0 + opacity * (encoded(luminance) - 1.0)
     });
     Ok((size, shown.collect()))
 }
@@ -213,7 +213,7 @@ impl Decoded {
     /// How opaque each pixel is, 0 to 1.
     fn opacities(&self) -> impl Iterator<Item = f32> {
         let width = if self.wide { 2 } else { 1 };
-        let clear = self.channels % 2 == 0;
+        let clear = self.channels.is_multiple_of(2);
         self.bytes
             .chunks_exact(self.channels * width)
             .map(move |pixel| match &pixel[(self.channels - 1) * width..] {

@@ -38,9 +38,13 @@ pub(crate) fn load(
     source: &Source,
     limits: &Limits,
 ) -> Result<(Arc<Sampled>, Duration), String> {
-    let name = match source {
+    let mut source = source.clone();
+    let file = match &mut source {
         Source::Mesh { file, .. } | Source::Grid { file } | Source::Image { file, .. } => file,
     };
+    // one name for one file
+    *file = Reading::normal(file).map_err(|e| e.to_string())?;
+    let (name, source) = (&file.clone(), &source);
     let mut taken = Duration::ZERO;
     let sampled = files.sampled(name, &format!("{source:?}"), |files| {
         let start = Instant::now();

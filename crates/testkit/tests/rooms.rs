@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// Crates that a browser runs: their clocks are those of `web_time`.
-const BROWSER: [&str; 10] = [
+const BROWSER: [&str; 11] = [
     "number",
     "catalogue",
     "eval",
@@ -14,6 +14,7 @@ const BROWSER: [&str; 10] = [
     "trace",
     "language",
     "gpu",
+    "volume",
 ];
 
 /// Files below a folder, with their text.

@@ -78,3 +78,4 @@ pub use zeroset_shade as shade;
 #[cfg(feature = "shaders")]
 pub use zeroset_shader as shader;
 pub use zeroset_trace as trace;
+pub use zeroset_volume as volume;

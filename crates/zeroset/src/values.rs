@@ -217,6 +217,46 @@ impl FromStr for Window {
     }
 }
 
+/// One of several words.
+fn word<T: Copy>(text: &str, words: &[(&'static str, T)]) -> Result<T, String> {
+    let found = words.iter().find(|(name, _)| *name == text);
+    found.map(|(_, value)| *value).ok_or_else(|| {
+        let names: Vec<&str> = words.iter().map(|w| w.0).collect();
+        format!("it is one of {}", names.join(", "))
+    })
+}
+
+/// A number of cells, 0 or more.
+pub(crate) fn cells(text: &str) -> Result<f64, &'static str> {
+    text.parse::<f64>()
+        .ok()
+        .filter(|x| x.is_finite() && *x >= 0.0)
+        .ok_or("write a number of cells, 0 or more")
+}
+
+/// What is inside of a mesh.
+pub(crate) fn sign(text: &str) -> Result<zeroset_volume::bake::Sign, String> {
+    use zeroset_volume::bake::Sign;
+    word(
+        text,
+        &[
+            ("auto", Sign::Auto),
+            ("parity", Sign::Parity),
+            ("winding", Sign::Winding),
+        ],
+    )
+}
+
+/// A metric of distance transforms.
+pub(crate) fn metric(text: &str) -> Result<zeroset_volume::transform::Metric, String> {
+    word(text, &zeroset_volume::transform::Metric::ALL)
+}
+
+/// A method of distance transforms.
+pub(crate) fn transform(text: &str) -> Result<zeroset_volume::transform::Method, String> {
+    word(text, &zeroset_volume::transform::Method::ALL)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -456,44 +496,4 @@ mod tests {
         ];
         assert!(checked.iter().all(|n| *n > 5), "{checked:?}");
     }
-}
-
-/// One of several words.
-fn word<T: Copy>(text: &str, words: &[(&'static str, T)]) -> Result<T, String> {
-    let found = words.iter().find(|(name, _)| *name == text);
-    found.map(|(_, value)| *value).ok_or_else(|| {
-        let names: Vec<&str> = words.iter().map(|w| w.0).collect();
-        format!("it is one of {}", names.join(", "))
-    })
-}
-
-/// A number of cells, 0 or more.
-pub(crate) fn cells(text: &str) -> Result<f64, &'static str> {
-    text.parse::<f64>()
-        .ok()
-        .filter(|x| x.is_finite() && *x >= 0.0)
-        .ok_or("write a number of cells, 0 or more")
-}
-
-/// What is inside of a mesh.
-pub(crate) fn sign(text: &str) -> Result<zeroset_volume::bake::Sign, String> {
-    use zeroset_volume::bake::Sign;
-    word(
-        text,
-        &[
-            ("auto", Sign::Auto),
-            ("parity", Sign::Parity),
-            ("winding", Sign::Winding),
-        ],
-    )
-}
-
-/// A metric of distance transforms.
-pub(crate) fn metric(text: &str) -> Result<zeroset_volume::transform::Metric, String> {
-    word(text, &zeroset_volume::transform::Metric::ALL)
-}
-
-/// A method of distance transforms.
-pub(crate) fn transform(text: &str) -> Result<zeroset_volume::transform::Method, String> {
-    word(text, &zeroset_volume::transform::Method::ALL)
 }

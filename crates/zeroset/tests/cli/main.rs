@@ -1,6 +1,7 @@
 //! The command line from outside: exit codes, what goes to which stream, and what happens to files.
 
 mod backend;
+mod bake;
 mod compare;
 mod converge;
 mod exits;
