@@ -107,10 +107,10 @@ render(footprint = 0.01, ao = none(), prepass = False, integrator = path(), aa =
 fn threads_change_nothing() {
     let text = "show(sphere(0.5).move(y = 0.5), material(color = \"#c04020\", roughness = 0.3))\nshow(plane())
 camera(eye = (0, 1, 3), target = (0, 0.4, 0))\nrender(integrator = path(3))";
-    let scene = scene(text, [140, 70]);
+    let scene = scene(text, [80, 40]);
     let [one, three] = [1, 3].map(|threads| {
         let renderer = CpuRenderer::new(Some(threads)).unwrap();
-        converged(&renderer, &scene, &Plane::ALL, 7, 0.08)
+        converged(&renderer, &scene, &Plane::ALL, 7, 0.015)
     });
     assert_eq!(one.rounds(), three.rounds());
     assert!(one.rays() > 0 && one.rays() == three.rays());
@@ -125,7 +125,8 @@ fn uneven_samples_are_weighed() {
 render(integrator = path(2), aa = supersample(16, \"mitchell\"))";
     let scene = scene(text, [140, 40]);
     let renderer = CpuRenderer::new(Some(2)).unwrap();
-    let uneven = converged(&renderer, &scene, &Plane::ALL, 1, 0.05);
+    let uneven = converged(&renderer, &scene, &Plane::ALL, 1, 0.02);
+    assert!(is_uneven(&uneven));
     let mut even = Progressive::new([140, 40], Filter::Mitchell, &Plane::ALL, 2, 0.0);
     let mut prepared = renderer.prepare(Arc::new(scene.clone())).unwrap();
     for _ in 0..uneven.rounds() {
