@@ -64,7 +64,7 @@ pub(crate) struct Bvh {
 }
 
 /// Items up to which a node is a leaf.
-const LEAF: usize = 4;
+const LEAF: usize = 6;
 const BINS: usize = 16;
 /// What deeper trees would need: a stack of this many nodes suffices for one that is halved at least from here on.
 const DEEP: u32 = 40;

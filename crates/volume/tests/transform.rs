@@ -33,7 +33,7 @@ fn marks(count: usize, seed: u64, one_in: u64) -> Vec<bool> {
             x ^= x << 13;
             x ^= x >> 7;
             x ^= x << 17;
-            x % one_in == 0
+            x.is_multiple_of(one_in)
         })
         .collect()
 }
