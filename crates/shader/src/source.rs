@@ -734,6 +734,7 @@ fn occlusion(method: &Occlusion) -> Option<Case> {
                 "cone_clear",
                 "cone_left",
                 "cone_share",
+                "cone_open",
             ],
             false,
         ),

@@ -1,6 +1,6 @@
 //! A bounding volume hierarchy over boxes: binned by the surface area heuristic (Wald 2007).
 //!
-//! obvhs and parry3d were looked at: their queries take a point at a time, where eight neighbours of a grid share nearly all of their
+//! obvhs and parry3d (read about, not measured) have queries that take a point at a time, where eight neighbours of a grid share nearly all of their
 //! way through the tree (see [`nearest`](crate::nearest)). What is needed of a tree itself is short.
 
 /// A box in single precision.

@@ -85,8 +85,12 @@ fn edges_are_close_to_256_rays_a_pixel() {
     ] {
         let [none, coverage, four] = measured(&scene(text));
         println!(
-            "{name}: none {:.4}, coverage {:.4}, 4 rays {:.4}",
-            none.error, coverage.error, four.error
+            "{name}: none {:.4}, coverage {:.4}, 4 rays {:.4}; evaluations times {:.2}, time times {:.2}",
+            none.error,
+            coverage.error,
+            four.error,
+            coverage.evaluations / none.evaluations,
+            coverage.seconds / none.seconds,
         );
         assert!(
             coverage.error * closer < none.error,
