@@ -430,7 +430,11 @@ fn exported_files_are_valid() {
             continue;
         };
         let what = path.display().to_string();
-        let text = export::wgsl(&loaded.scene).unwrap_or_else(|e| panic!("{what}: {e}"));
+        let text = match export::wgsl(&loaded.scene) {
+            // a mesh has more samples than a file holds, and is refused for that
+            Err(e) if e.to_string().contains("samples of grids") => continue,
+            text => text.unwrap_or_else(|e| panic!("{what}: {e}")),
+        };
         validate(&text, &what);
         let text = export::glsl(&loaded.scene).unwrap_or_else(|e| panic!("{what}: {e}"));
         // what Shadertoy puts around a file
