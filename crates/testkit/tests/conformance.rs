@@ -531,13 +531,13 @@ fn steps_are_counted_alike() {
 fn pixels_are_parted_alike() {
     let gpu = testing::renderer("coverage on the GPU");
     let renderer = CpuRenderer::new(None).unwrap();
-    for name in [
-        "hello.star",
-        "papers/tomczak_sphere_ground_1.star",
-        "papers/keinert_dodecahedron.star",
+    for (name, layers) in [
+        ("hello.star", 4),
+        ("papers/tomczak_sphere_ground_1.star", 8),
+        ("papers/keinert_dodecahedron.star", 1),
     ] {
         let mut scene = scene(&scenes::folder().join(name));
-        let coverage = Antialias::Coverage { layers: 4 };
+        let coverage = Antialias::Coverage { layers };
         scene
             .edit(|s| s.settings.antialias = coverage)
             .expect("a scene");

@@ -266,7 +266,7 @@ pub(crate) fn part<S: Simd>(s: S, solid: &Solid<'_>, area: &Area, layers: u32, q
                 (jitter[0][whole.pixel], jitter[1][whole.pixel]) = (middle.x + 0.5, middle.y + 0.5);
             }
         }
-        open.extend(rest);
+        keep(&pixels, paths, open, rest);
     });
     primary::aim(s, solid.view, area, jitter, queue);
     while !open.is_empty() && !solid.stop.is_set() {
@@ -312,12 +312,17 @@ pub(crate) fn part<S: Simd>(s: S, solid: &Solid<'_>, area: &Area, layers: u32, q
                     paths.push_from_eye(PathRay { ray, state, start });
                 }
             }
-            match rest {
-                Some(rest) if rest.layers > 0 => open.push(rest),
-                Some(rest) => send(&pixels, paths, &rest, rest.start),
-                None => {}
-            }
+            keep(&pixels, paths, open, rest);
         });
+    }
+}
+
+/// Keeps what an edge left of a part for a cone of its own, or leaves a ray where no more edges may part it.
+fn keep(pixels: &Pixels<'_>, paths: &mut Paths, open: &mut Vec<Open>, rest: Option<Open>) {
+    match rest {
+        Some(rest) if rest.layers > 0 => open.push(rest),
+        Some(rest) => send(pixels, paths, &rest, rest.start),
+        None => {}
     }
 }
 
