@@ -351,6 +351,9 @@ impl Box3 {
         for k in 0..3 {
             let first = (tile.origin[k] - self.low[k]).clamp(0, self.sides[k] as i64);
             let last = (tile.origin[k] + tile.side - self.low[k]).clamp(0, self.sides[k] as i64);
+            if first >= last {
+                return 0;
+            }
             ranges[k] = (first as usize, last as usize);
         }
         for z in ranges[2].0..ranges[2].1 {
@@ -417,8 +420,13 @@ impl<'a> From<'a> {
         bytes.ok_or(FileError::Cut(what))
     }
 
+    /// Goes on at another byte, never at an earlier one: a grid that ends where it began would be read for ever.
     fn jump(&mut self, to: u64) -> Result<(), FileError> {
         match usize::try_from(to) {
+            Ok(to) if to < self.at => Err(FileError::Byte {
+                at: self.at,
+                reason: format!("what follows stands before it, at byte {to}: the file is damaged"),
+            }),
             Ok(to) if to <= self.bytes.len() => {
                 self.at = to;
                 Ok(())
@@ -512,7 +520,33 @@ impl<'a> From<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::half;
+    use super::{FileError, half, read, vdb};
+
+    /// Found by fuzzing: a descriptor whose grid ends where the descriptor begins, four thousand million times.
+    #[test]
+    fn a_grid_that_ends_before_it_begins() {
+        let mut file = vdb::MAGIC.to_vec();
+        file.extend(vdb::VERSION.to_le_bytes());
+        file.extend([0; 8]);
+        file.push(1);
+        file.extend([0; 36]);
+        file.extend(0_u32.to_le_bytes());
+        file.extend(u32::MAX.to_le_bytes());
+        let first = file.len() as u64;
+        // three empty texts: a name, a kind, a parent
+        file.extend([0; 12]);
+        for place in [first, first, first] {
+            file.extend(place.to_le_bytes());
+        }
+        let end = file.len();
+        match read(&file, 1000) {
+            Err(FileError::Byte { at, reason }) => {
+                assert_eq!(at, end);
+                assert!(reason.contains(&format!("at byte {first}")), "{reason}");
+            }
+            other => panic!("{other:?}"),
+        }
+    }
 
     #[test]
     fn half_precision() {
