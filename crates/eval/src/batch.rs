@@ -23,6 +23,13 @@ pub fn gradients<S: Simd>(s: S, tape: Tape<'_>, w: &mut Workspace, n: usize) {
     run_gradients(s.level(), tape, &mut w.duals, n);
 }
 
+/// Finds where the points lie after the maps of a tape, and how that changes with the point: see [`Workspace::place`]. What
+/// [`gradients`] found is lost.
+pub fn places<S: Simd>(s: S, tape: Tape<'_>, w: &mut Workspace, n: usize) {
+    w.begin_places(tape);
+    run_gradients(s.level(), tape, &mut w.duals, n);
+}
+
 // Not generic, so that the kernels are compiled once, in this crate.
 #[inline(never)]
 pub(super) fn run_values(level: Level, tape: Tape<'_>, lanes: &mut [Lane], n: usize) {

@@ -37,7 +37,7 @@ mod marks;
 mod point;
 mod workspace;
 
-pub use batch::{gradients, values};
+pub use batch::{gradients, places, values};
 pub use evaluator::{Evaluator, LengthError};
 pub use marks::marks;
 pub use point::{Point, PointNumber};

@@ -51,13 +51,23 @@ impl<'t, R: PointNumber> Point<'t, R> {
 
     /// The value at `p`.
     pub fn value(&mut self, p: Vec3<R>) -> R {
+        self.run(p);
+        self.registers[usize::from(self.tape.code.result)]
+    }
+
+    /// The point that is left in a register when `p` is evaluated at: where `p` lies after maps.
+    pub fn place(&mut self, p: Vec3<R>, register: u16) -> Vec3<R> {
+        self.run(p);
+        point(&self.registers, register)
+    }
+
+    fn run(&mut self, p: Vec3<R>) {
         let code = self.tape.code;
         if self.registers.is_empty() {
             self.registers.resize(usize::from(code.registers), p.x);
         }
         self.registers[..3].copy_from_slice(&[p.x, p.y, p.z]);
         R::run(self.tape, &mut self.registers);
-        self.registers[usize::from(code.result)]
     }
 }
 

@@ -75,6 +75,23 @@ impl Workspace {
         &self.duals[self.result_dual]
     }
 
+    /// Takes the points as those that are mapped.
+    pub(super) fn begin_places(&mut self, tape: Tape<'_>) {
+        let lanes = 4 * usize::from(tape.code.registers);
+        if self.duals.len() < lanes {
+            self.duals.resize(lanes, Lane::ZERO);
+        }
+        self.begin_gradients(tape);
+    }
+
+    /// What [`places`](crate::places) left in a register: of each coordinate of the mapped point its value and its derivatives along x, y
+    /// and z.
+    pub fn place(&self, register: u16) -> &[Lane; 12] {
+        (&self.duals[4 * usize::from(register)..][..12])
+            .try_into()
+            .expect("a point has three coordinates of four numbers")
+    }
+
     /// Takes the points as those to differentiate at.
     pub(super) fn begin_gradients(&mut self, tape: Tape<'_>) {
         for k in 0..3 {

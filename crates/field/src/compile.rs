@@ -3,7 +3,7 @@
 use crate::field::{Field, Node, Paint};
 use crate::formula::{Binary, Formula, FormulaStep};
 use crate::placement::Placement;
-use crate::program::{CompileError, Limits, Program, Structure};
+use crate::program::{Coat, CompileError, Limits, Program, Structure};
 use crate::repetition::{Polar, Repetition};
 use crate::sampled::Sampled;
 use std::collections::HashMap;
@@ -46,13 +46,21 @@ struct Lowering<'l> {
     /// Shared nodes: the value of a node at a point.
     known: HashMap<(usize, u32), u32>,
     limits: &'l Limits,
+    /// Of each material, whether it depends on where it is.
+    spatial: &'l [bool],
+    /// Materials, and the points of the spaces that they lie in.
+    coats: Vec<(u16, u32)>,
     /// Whether a value may need a division by its slope, by the kinds of nodes alone.
     steep: bool,
     /// The largest slope that a value is divided by.
     slope: f64,
 }
 
-pub(crate) fn compile(field: &Field, limits: &Limits) -> Result<Program, CompileError> {
+pub(crate) fn compile(
+    field: &Field,
+    limits: &Limits,
+    spatial: &[bool],
+) -> Result<Program, CompileError> {
     let facts = field.facts();
     if facts.dimension == Dimension::Two {
         return Err(CompileError::Flat);
@@ -64,15 +72,20 @@ pub(crate) fn compile(field: &Field, limits: &Limits) -> Result<Program, Compile
         sides: Vec::new(),
         known: HashMap::new(),
         limits,
+        spatial,
+        coats: Vec::new(),
         steep: false,
         slope: 1.0,
     };
     let value = l.field(field, INPUT)?;
     let result = l.unit(field, value)?;
+    let (places, coats) = places(&l.steps, &l.coats)?;
     let structure = Structure {
         values: registers(&l.steps, result, false)?,
         marks: registers(&l.steps, result, true)?,
         sides: l.sides,
+        places,
+        coats,
     };
     Ok(Program {
         structure: Arc::new(structure),
@@ -213,7 +226,7 @@ impl Lowering<'_> {
             Node::Sampled(sampled) => self.sampled(sampled, point)?,
             Node::Paint { paint, shape } => {
                 let value = self.field(shape, point)?;
-                self.mark(*paint, value)?
+                self.mark(*paint, value, point)?
             }
             Node::Sided(shape) => {
                 let value = self.field(shape, point)?;
@@ -242,12 +255,28 @@ impl Lowering<'_> {
         self.pair(code, x, y, &[])
     }
 
-    fn mark(&mut self, paint: Paint, value: u32) -> Result<u32, CompileError> {
+    fn mark(&mut self, paint: Paint, value: u32, point: u32) -> Result<u32, CompileError> {
         let mark = match paint {
-            Paint::Material(number) => Operation::Mark(0, number),
+            Paint::Material(number) => Operation::Mark(0, self.coat(number, point)?),
             Paint::Object(number) => Operation::Mark(1, number),
         };
         self.emit(mark, value, INPUT, &[])
+    }
+
+    /// The number that marks a material at a point of its own space.
+    fn coat(&mut self, material: u16, point: u32) -> Result<u16, CompileError> {
+        let is_spatial = self.spatial.get(usize::from(material)) == Some(&true);
+        if !is_spatial || point == INPUT {
+            return Ok(material);
+        }
+        let known = self.coats.iter().position(|c| *c == (material, point));
+        let coat = known.unwrap_or_else(|| {
+            self.coats.push((material, point));
+            self.coats.len() - 1
+        });
+        u16::try_from(self.spatial.len() + coat).map_err(|_| CompileError::Coats {
+            limit: usize::from(u16::MAX) - self.spatial.len(),
+        })
     }
 
     /// The value of a field, divided by its slope.
@@ -483,6 +512,54 @@ fn grid(r: &Repetition) -> Vec<f64> {
     };
     let axes = [axis(0), axis(1), axis(2)];
     (0..5).flat_map(|i| axes.map(|a| a[i])).collect()
+}
+
+/// The maps that lead to the spaces of coats, each with a register of its own.
+fn places(steps: &[Lowered], coats: &[(u16, u32)]) -> Result<(Code, Vec<Coat>), CompileError> {
+    let mut register = vec![None; steps.len()];
+    for &(_, point) in coats {
+        let mut at = point;
+        while at != INPUT && register[at as usize].is_none() {
+            register[at as usize] = Some(0);
+            at = steps[at as usize].a;
+        }
+    }
+    // in their order: what a map reads is before it
+    let mut count = 1;
+    for slot in register.iter_mut().flatten() {
+        *slot = 3 * count;
+        count += 1;
+    }
+    let (needed, limit) = (3 * count, usize::from(u16::MAX) / 4);
+    if needed > limit {
+        return Err(CompileError::Registers { needed, limit });
+    }
+    let number = |i: u32| match i {
+        INPUT => 0,
+        i => register[i as usize].unwrap_or(0) as u16,
+    };
+    let instructions = (steps.iter().zip(0..))
+        .filter(|(_, i)| register[*i as usize].is_some())
+        .map(|(step, i)| Instruction {
+            operation: step.operation,
+            out: number(i),
+            a: number(step.a),
+            b: number(step.b),
+            at: step.at,
+        })
+        .collect();
+    let code = Code {
+        instructions,
+        registers: needed as u16,
+        result: 0,
+    };
+    let coats = (coats.iter())
+        .map(|&(material, point)| Coat {
+            material,
+            place: number(point),
+        })
+        .collect();
+    Ok((code, coats))
 }
 
 /// Keeps what the result needs and gives every value a register, the same one to values that are never needed together.

@@ -24,6 +24,19 @@ pub struct Structure {
     pub marks: Code,
     /// Parameters that are 1 for rays outside all bodies, and others for rays inside clear ones: see [`Program::inside`].
     pub sides: Vec<u32>,
+    /// Instructions that find where a point lies in the spaces of [`Structure::coats`]: maps alone, without a result.
+    pub places: Code,
+    /// Materials in the space of what they were painted on: see [`Program::compile_painted`].
+    pub coats: Vec<Coat>,
+}
+
+/// A material in the space of what it was painted on. A part that was painted and then moved to two places has two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Coat {
+    /// The number of the material.
+    pub material: u16,
+    /// Where [`Structure::places`] leave the point in that space.
+    pub place: u16,
 }
 
 /// A compiled field. Cheap to clone.
@@ -94,6 +107,12 @@ pub enum CompileError {
         /// Allowed.
         limit: usize,
     },
+    /// More materials, counted once for each part that they lie on, than can be numbered.
+    #[error("patterns lie on more than {limit} parts: paint them where they are joined")]
+    Coats {
+        /// The limit.
+        limit: usize,
+    },
     /// A shape of the plane, which cannot be rendered.
     #[error("the field is 2D: make a solid of it with extrude(...) or revolve(...)")]
     Flat,
@@ -105,7 +124,34 @@ impl Program {
     /// # Errors
     /// A field over the limits.
     pub fn compile(field: &Field, limits: &Limits) -> Result<Program, CompileError> {
-        compile::compile(field, limits)
+        compile::compile(field, limits, &[])
+    }
+
+    /// Compiles a field whose materials may depend on where they are. `spatial` says of each material whether it does. Where such a one was
+    /// painted on something that was then moved, or otherwise mapped, its marks are not its number n, but `spatial.len() + k`, where k is that of a
+    /// coat (see [`Program::coats`]): this material, in the space of what it was painted on.
+    ///
+    /// # Errors
+    /// A field over the limits.
+    pub fn compile_painted(
+        field: &Field,
+        limits: &Limits,
+        spatial: &[bool],
+    ) -> Result<Program, CompileError> {
+        compile::compile(field, limits, spatial)
+    }
+
+    /// What finds where a point lies in the spaces of coats. It has no result: [`Coat::place`] says where each is.
+    pub fn places(&self) -> Tape<'_> {
+        Tape {
+            code: &self.structure.places,
+            data: &self.data,
+        }
+    }
+
+    /// The materials in the spaces of what they were painted on.
+    pub fn coats(&self) -> &[Coat] {
+        &self.structure.coats
     }
 
     /// What it does, apart from its numbers.

@@ -420,14 +420,14 @@ fn damaged(numbers: &[(u8, f32)], wide: f64, turn: [f64; 3]) -> SceneParts {
             19 => scene.materials[material].shininess = x,
             20 => {
                 scene.materials[material].pattern = Pattern::Gradient {
-                    colours: [Vec3::ONE, Vec3::splat(x)],
+                    colours: [Vec3::ONE.into(), Vec3::splat(x).into()],
                     from: Vec3::splat(x),
                     to: Vec3::ZERO,
                 }
             }
             21 => {
                 scene.materials[material].pattern = Pattern::Stripes {
-                    colours: [Vec3::ONE; 2],
+                    colours: [Vec3::ONE.into(), Vec3::ONE.into()],
                     direction: Vec3::new(x, x, 0.0).normalize_or_zero(),
                     size: x.abs(),
                 }

@@ -175,11 +175,14 @@ impl Scene {
     }
 
     /// Whether both scenes have the same field, as far as that is seen without a look into it: the same shapes, painted with the
-    /// same numbers of materials.
+    /// same numbers of materials, of which the same depend on where they are.
     pub fn has_field_of(&self, other: &Scene) -> bool {
         let same =
             |(a, b): (&Object, &Object)| a.field.key() == b.field.key() && a.material == b.material;
-        self.objects().len() == other.objects().len()
+        let spatial = |scene: &Scene| scene.materials().iter().map(Material::is_spatial).collect();
+        let (own, others): (Vec<bool>, Vec<bool>) = (spatial(self), spatial(other));
+        own == others
+            && self.objects().len() == other.objects().len()
             && self.objects().iter().zip(other.objects()).all(same)
     }
 

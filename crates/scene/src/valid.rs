@@ -9,7 +9,7 @@ pub use methods::{antialias, integrator, march, occlusion, shadow};
 
 use crate::camera::{Camera, Lens};
 use crate::light::{Fog, Light, Sky, Source};
-use crate::material::{Image, Material, Pattern};
+use crate::material::{Image, Ink, Material, Pattern};
 use crate::methods::Value::{Real, Whole};
 use crate::scene::SceneParts;
 use crate::settings::Settings;
@@ -71,8 +71,12 @@ pub(crate) fn parts(scene: &SceneParts) -> Checked {
     for (i, m) in scene.materials.iter().enumerate() {
         let in_list = |e: SceneError| e.index(i).at("materials");
         material(m).map_err(in_list)?;
-        if let Pattern::Triplanar { image: i, .. } = &m.pattern {
-            image(i).map_err(|e| in_list(e.at("image").at("pattern")))?;
+        for (name, pattern) in m.patterns() {
+            for part in pattern.parts() {
+                if let Pattern::Triplanar { image: i, .. } = part {
+                    image(i).map_err(|e| in_list(e.at("image").at(name)))?;
+                }
+            }
         }
     }
     for (i, l) in scene.lights.iter().enumerate() {
@@ -185,7 +189,12 @@ fn direction(name: &'static str, value: Vec3) -> Checked {
 /// # Errors
 /// Which number is wrong.
 pub fn material(material: &Material) -> Checked {
-    pattern(&material.pattern).map_err(|e| e.at("pattern"))?;
+    for (name, whole) in material.patterns() {
+        pattern(whole).map_err(|e| e.at(name))?;
+    }
+    if let Some(bump) = &material.bump {
+        number("depth", bump.depth, -(LARGE as f32), LARGE as f32).map_err(|e| e.at("bump"))?;
+    }
     number("specular", material.specular, 0.0, 10.0)?;
     number("shininess", material.shininess, 1.0, 1e4)?;
     number("metallic", material.metallic, 0.0, 1.0)?;
@@ -212,8 +221,20 @@ pub fn image(image: &Image) -> Checked {
     }))
 }
 
-fn pattern(pattern: &Pattern) -> Checked {
-    let colours = |list: &[Vec3]| list.iter().try_for_each(|c| colour("colours", *c));
+fn pattern(whole: &Pattern) -> Checked {
+    // asked for first: what is too deep is not gone down
+    let parts: Vec<&Pattern> = whole.parts().take(Pattern::MOST + 1).collect();
+    count("parts", parts.len() as u32, 1, Pattern::MOST as u32)?;
+    parts.into_iter().try_for_each(pattern_part)
+}
+
+fn pattern_part(pattern: &Pattern) -> Checked {
+    let colours = |list: &[Ink]| {
+        list.iter().try_for_each(|ink| match ink {
+            Ink::Colour(c) => colour("colours", *c),
+            Ink::Pattern(_) => Ok(()),
+        })
+    };
     let scale = |x: f32| number("size", x, SMALL as f32, LARGE as f32);
     match pattern {
         Pattern::Solid { colour: c } => colour("colour", *c),
@@ -257,6 +278,14 @@ fn pattern(pattern: &Pattern) -> Checked {
             number("sharpness", *sharpness, 1.0, 64.0)
         }
         Pattern::Orbit { colours: c } => colours(c),
+        Pattern::Placed { rows, offset, .. } => {
+            for row in rows {
+                vector("rows", *row, LARGE as f32)?;
+            }
+            vector("offset", *offset, FAR)?;
+            let volume = rows[0].dot(rows[1].cross(rows[2])).abs();
+            number("determinant of rows", volume, f32::MIN_POSITIVE, f32::MAX)
+        }
     }
 }
 

@@ -152,7 +152,7 @@ fn numbers_are_numbers() {
         }),
         ("materials[0].pattern.size", |s, x| {
             s.materials[0].pattern = Pattern::Checker {
-                colours: [Vec3::ONE; 2],
+                colours: [Vec3::ONE.into(), Vec3::ONE.into()],
                 size: x,
             };
         }),
@@ -253,7 +253,7 @@ fn directions_images_and_shapes_fit() {
     says(
         &refused(|s| {
             s.materials[0].pattern = Pattern::Gradient {
-                colours: [Vec3::ONE; 2],
+                colours: [Vec3::ONE.into(), Vec3::ONE.into()],
                 from: Vec3::ONE,
                 to: Vec3::ONE,
             };

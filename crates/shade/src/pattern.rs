@@ -1,10 +1,12 @@
 //! What colour a surface has where: patterns, averaged over the footprint of a pixel.
 
+use crate::light::luminance_of;
+use crate::sampling::basis;
 use crate::{each, parameters};
 use fearless_simd::{Simd, prelude::*};
 use zeroset_catalogue::noise::gradient_noise;
 use zeroset_number::{Lanes, Ops, Real, Vec2, Vec3, v2, v3};
-use zeroset_scene::material::{Image, Pattern};
+use zeroset_scene::material::{Image, Ink, Pattern};
 
 /// A place on a surface, as far as its colour depends on it.
 #[derive(Clone, Copy, Debug)]
@@ -13,8 +15,10 @@ pub struct Place<R> {
     pub point: Vec3<R>,
     /// The unit normal.
     pub normal: Vec3<R>,
-    /// How far the point moves from one ray to the next, at most, along each axis.
-    pub footprint: Vec3<R>,
+    /// How wide a pixel is there, across the ray.
+    pub width: R,
+    /// How much longer than wide a pixel is on the surface, along the view.
+    pub stretch: Vec3<R>,
     /// How near the orbit of a fractal came to its traps.
     pub orbit: [R; 4],
 }
@@ -26,7 +30,8 @@ impl<R: Real> Place<R> {
         Place {
             point,
             normal,
-            footprint: footprint(normal, d, pixel),
+            width: pixel,
+            stretch: stretch(normal, d, pixel),
             orbit: [pixel.lit(0.0); 4],
         }
     }
@@ -36,21 +41,82 @@ impl<R: Real> Place<R> {
     pub fn with_orbit(self, orbit: [R; 4]) -> Self {
         Place { orbit, ..self }
     }
+
+    /// How far the point moves along each axis from one ray to the next, at most.
+    #[inline(always)]
+    pub fn footprint(&self) -> Vec3<R> {
+        footprint(self.normal, self.width, self.stretch)
+    }
+
+    /// The same place in another space, in which it is at `point`. `rows` say how that changes with where it is: of each of its
+    /// coordinates the derivatives.
+    #[inline(always)]
+    pub fn mapped(self, point: Vec3<R>, rows: [Vec3<R>; 3]) -> Self {
+        Place {
+            point,
+            normal: mapped_normal(self.normal, rows),
+            width: self.width * mapped_scale(rows),
+            stretch: times(rows, self.stretch),
+            orbit: self.orbit,
+        }
+    }
 }
 
-/// How far the point moves along each axis from one ray to the next, at most, where a ray of direction `d` and width `pixel`
-/// meets a surface: there the pixel is an ellipse, as wide as the ray across, and longer by the cosine along the view.
+/// The product of a matrix of these rows with a vector.
 #[inline(always)]
-pub fn footprint<R: Real>(normal: Vec3<R>, d: Vec3<R>, pixel: R) -> Vec3<R> {
+pub fn times<R: Real>(rows: [Vec3<R>; 3], v: Vec3<R>) -> Vec3<R> {
+    each(
+        #[inline(always)]
+        |k| rows[k].dot(v),
+    )
+}
+
+/// The unit normal of a surface after a map whose derivatives these are: planes go by the cofactors of the matrix.
+#[inline(always)]
+pub fn mapped_normal<R: Real>(normal: Vec3<R>, rows: [Vec3<R>; 3]) -> Vec3<R> {
+    let [x, y, z] = rows;
+    let cofactors = [y.cross(z), z.cross(x), x.cross(y)];
+    let turned = times(cofactors, normal);
+    let length = turned.length();
+    // a mirror turns the cofactors' side
+    let side = R::choose(
+        x.dot(cofactors[0]).negative(),
+        length.lit(-1.0),
+        length.lit(1.0),
+    );
+    let known = length.above(f32::MIN_POSITIVE);
+    let mapped = turned * (side / length.max(f32::MIN_POSITIVE));
+    let (n, m) = (normal.array(), mapped.array());
+    each(
+        #[inline(always)]
+        |k| R::choose(known, m[k], n[k]),
+    )
+}
+
+/// How much longer than before lengths are after a map, in the mean over all directions.
+#[inline(always)]
+pub fn mapped_scale<R: Real>([x, y, z]: [Vec3<R>; 3]) -> R {
+    ((x.length_squared() + y.length_squared() + z.length_squared()) * (1.0 / 3.0)).sqrt()
+}
+
+/// How much longer than wide a pixel is on a surface, along the view: longer by the cosine.
+#[inline(always)]
+pub fn stretch<R: Real>(normal: Vec3<R>, d: Vec3<R>, pixel: R) -> Vec3<R> {
     let facing = normal.dot(d);
     let cosine = facing.abs().max(0.05);
     let along = d - normal * facing;
     let along = along / along.length().max(1e-6);
-    let longer = cosine.recip() - 1.0;
-    let (n, a) = (normal.array(), along.array());
+    along * ((cosine.recip() - 1.0) * pixel)
+}
+
+/// How far the point moves along each axis from one ray to the next, at most: a pixel is an ellipse on the surface, as wide as the ray
+/// across, and longer along the view.
+#[inline(always)]
+pub fn footprint<R: Real>(normal: Vec3<R>, width: R, stretch: Vec3<R>) -> Vec3<R> {
+    let (n, along) = (normal.array(), stretch.array());
     each(
         #[inline(always)]
-        |k| pixel * (n[k].sq().one_minus().max(0.0).sqrt() + a[k].abs() * longer),
+        |k| width * n[k].sq().one_minus().max(0.0).sqrt() + along[k].abs(),
     )
 }
 
@@ -64,43 +130,33 @@ const TRAP: f32 = 0.08;
 /// Most octaves of noise.
 pub const OCTAVES: u32 = 8;
 
-/// Cubes of two colours, of side `size`.
+/// Cubes of side `size`: the share of the second of two inks.
 #[inline(always)]
-pub fn checker<R: Real>(at: &Place<R>, colours: [Vec3<R::Scalar>; 2], size: R::Scalar) -> Vec3<R> {
+pub fn checker<R: Real>(at: &Place<R>, size: R::Scalar) -> R {
     let p = (at.point - at.normal * (size * INWARDS)) / size;
-    let w = at.footprint / size;
+    let w = at.footprint() / size;
     let even = square_wave(p.x, w.x) * square_wave(p.y, w.y) * square_wave(p.z, w.z);
-    between::<R>(colours, even * 0.5 + 0.5)
+    even * 0.5 + 0.5
 }
 
-/// Bands of two colours across a `direction`, as wide as `size`.
+/// Bands across a `direction`, as wide as `size`: the share of the second of two inks.
 #[inline(always)]
-pub fn stripes<R: Real>(
-    at: &Place<R>,
-    colours: [Vec3<R::Scalar>; 2],
-    direction: Vec3<R::Scalar>,
-    size: R::Scalar,
-) -> Vec3<R> {
+pub fn stripes<R: Real>(at: &Place<R>, direction: Vec3<R::Scalar>, size: R::Scalar) -> R {
     let p = (at.point - at.normal * (size * INWARDS)).dot(direction) / size;
-    let w = at.footprint.dot(direction.abs()) / size;
-    between::<R>(colours, square_wave(p, w) * 0.5 + 0.5)
+    let w = at.footprint().dot(direction.abs()) / size;
+    square_wave(p, w) * 0.5 + 0.5
 }
 
-/// Fractal noise between two colours: `octaves` of gradient noise (at least 1, at most [`OCTAVES`]), each of half the size and
+/// Fractal noise as the share of the second of two inks: `octaves` of gradient noise (at least 1, at most [`OCTAVES`]), each of half the size and
 /// half the strength of the one before. Features finer than a pixel fade to their mean, which is zero.
 #[inline(always)]
-pub fn noise<R: Real>(
-    at: &Place<R>,
-    colours: [Vec3<R::Scalar>; 2],
-    size: R::Scalar,
-    octaves: R::Scalar,
-) -> Vec3<R> {
+pub fn noise<R: Real>(at: &Place<R>, size: R::Scalar, octaves: R::Scalar) -> R {
     let x = at.point.x;
     let octaves = octaves.max(1.0);
     let first = (
         x.lit(0.0),
         at.point / size,
-        at.footprint.length() / size,
+        at.footprint().length() / size,
         x.lit(1.0),
         x.lit(0.0),
         x.lit(0.0),
@@ -120,40 +176,48 @@ pub fn noise<R: Real>(
             (sum, p, w * 2.0, share * 0.5, total + share, octave + 1.0)
         },
     );
-    between::<R>(colours, (sum * (x.lit(0.8) / total) + 0.5).clamp01())
+    (sum * (x.lit(0.8) / total) + 0.5).clamp01()
 }
 
-/// From one colour to another between two points.
+/// From one of two inks to the other between two points: the share of the second.
 #[inline(always)]
-pub fn gradient<R: Real>(
-    at: &Place<R>,
-    colours: [Vec3<R::Scalar>; 2],
-    from: Vec3<R::Scalar>,
-    to: Vec3<R::Scalar>,
-) -> Vec3<R> {
+pub fn gradient<R: Real>(at: &Place<R>, from: Vec3<R::Scalar>, to: Vec3<R::Scalar>) -> R {
     let way = to - from;
     let t = (at.point - from).dot(way) / way.length_squared().max(f32::MIN_POSITIVE);
-    between::<R>(colours, t.clamp01())
+    t.clamp01()
 }
 
-/// Colours by the orbit of a fractal: the nearer a trap, the more its colour counts.
+/// Shares of four inks by the orbit of a fractal: the nearer a trap, the more its ink counts.
 #[inline(always)]
-pub fn orbit<R: Real>(at: &Place<R>, colours: [Vec3<R::Scalar>; 4]) -> Vec3<R> {
+pub fn orbit<R: Real>(at: &Place<R>) -> [R; 4] {
     let mut weights = at.orbit;
     for weight in &mut weights {
         *weight = (weight.sq() + TRAP * TRAP).recip();
     }
     let total = weights[0] + weights[1] + weights[2] + weights[3];
-    let [a, b, c, d] = colours;
-    let (a, b, c, d) = (a.array(), b.array(), c.array(), d.array());
-    each(
-        #[inline(always)]
-        |k| {
-            let sum = weights[0] * a[k] + weights[1] * b[k] + weights[2] * c[k] + weights[3] * d[k];
-            sum / total
-        },
-    )
+    for weight in &mut weights {
+        *weight = *weight / total;
+    }
+    weights
 }
+
+/// The normal of a surface with heights that rise by `rise` along two directions, which are at right angles to it and each other (Blinn
+/// 1978). What is seen from direction `d` stays in sight.
+#[inline(always)]
+pub fn bumped<R: Real>(normal: Vec3<R>, across: [Vec3<R>; 2], rise: [R; 2], d: Vec3<R>) -> Vec3<R> {
+    let turned = normal - across[0] * rise[0] - across[1] * rise[1];
+    let turned = turned / turned.length();
+    // what would face away is seen edge-on, nearly
+    let away = (turned.dot(d) + GRAZING).max(0.0);
+    let turned = turned - d * away;
+    turned / turned.length()
+}
+
+/// Cosine at which bumps are seen at least.
+const GRAZING: f32 = 0.02;
+
+/// Share of its finest feature over which the slope of a height is taken, at least.
+pub const BUMP_STEP: f32 = 0.05;
 
 /// Projections that weigh less than this are left out.
 pub const LEAST_WEIGHT: f32 = 1e-4;
@@ -182,17 +246,6 @@ pub fn projection<R: Real>(p: Vec3<R>, normal: Vec3<R>, axis: R, size: R::Scalar
     let u = R::choose(third, p.x * side.z, u);
     let v = R::choose(second & !third, p.z * side.y, -p.y);
     v2(u / size, v / size)
-}
-
-/// From one colour to another.
-#[inline(always)]
-fn between<R: Real>(colours: [Vec3<R::Scalar>; 2], t: R) -> Vec3<R> {
-    let [a, b] = colours;
-    let (a, rise) = (a.array(), (b - a).array());
-    each(
-        #[inline(always)]
-        |k| t * rise[k] + a[k],
-    )
 }
 
 /// 1 in even cells of size 1 and -1 in odd ones, averaged over `w` around `x` (the difference of two values of its integral,
@@ -251,38 +304,241 @@ impl<S: Simd> PerLane for Lanes<S> {
     }
 }
 
-/// The linear colour of a pattern at a place.
-#[inline(always)]
-pub fn colour<R: PerLane>(pattern: &Pattern, at: &Place<R>) -> Vec3<R> {
-    let two = |colours: &[glam::Vec3; 2]| [parameters(colours[0]), parameters(colours[1])];
-    match pattern {
-        Pattern::Solid { colour } => at.point.like(parameters(*colour)),
-        Pattern::Checker { colours, size } => checker(at, two(colours), *size),
-        Pattern::Stripes {
-            colours,
-            direction,
-            size,
-        } => stripes(at, two(colours), parameters(*direction), *size),
-        Pattern::Noise {
-            colours,
-            size,
-            octaves,
-        } => noise(at, two(colours), *size, *octaves as f32),
-        Pattern::Gradient { colours, from, to } => {
-            gradient(at, two(colours), parameters(*from), parameters(*to))
+/// A pattern, flattened: parts, each before those that it shows. Asked as it is asked at a million places.
+#[derive(Clone, Debug)]
+pub struct Texture {
+    parts: Vec<Part>,
+    /// Size of the finest thing to be seen on it.
+    finest: f32,
+}
+
+/// A part of a texture.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// What it is; its inks are not looked at.
+    pub pattern: Pattern,
+    /// What its inks are.
+    pub inks: [PartInk; 4],
+    /// Where it lies, if not where the whole texture does.
+    pub frame: Option<Frame>,
+}
+
+/// What a part shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PartInk {
+    /// A colour.
+    Colour(glam::Vec3),
+    /// Another part, by number.
+    Part(usize),
+}
+
+/// From a point of a texture to one of a part of it: the product with the rows, and the offset.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Rows of the matrix.
+    pub rows: [glam::Vec3; 3],
+    /// Added to the product.
+    pub offset: glam::Vec3,
+}
+
+impl Frame {
+    const NONE: Frame = Frame {
+        rows: [glam::Vec3::X, glam::Vec3::Y, glam::Vec3::Z],
+        offset: glam::Vec3::ZERO,
+    };
+
+    /// This map, and then another.
+    fn then(&self, rows: &[glam::Vec3; 3], offset: glam::Vec3) -> Frame {
+        let columns = [0, 1, 2].map(|k| glam::Vec3::from(self.rows.map(|row| row[k])));
+        let product = rows.map(|row| glam::Vec3::from(columns.map(|column| row.dot(column))));
+        let moved = glam::Vec3::from(rows.map(|row| row.dot(self.offset)));
+        Frame {
+            rows: product,
+            offset: moved + offset,
         }
-        Pattern::Triplanar {
-            image,
-            size,
-            sharpness,
-        } => R::each(
-            at.point,
-            at.normal,
-            #[inline(always)]
-            |p, n| triplanar(image, *size, *sharpness, p, n),
-        ),
-        Pattern::Orbit { colours } => orbit(at, colours.map(parameters)),
     }
+}
+
+impl Texture {
+    /// Of a pattern.
+    pub fn new(pattern: &Pattern) -> Texture {
+        let mut texture = Texture {
+            parts: Vec::new(),
+            finest: f32::INFINITY,
+        };
+        texture.push(pattern, Frame::NONE);
+        texture
+    }
+
+    /// Its parts. The first is what it shows.
+    pub fn parts(&self) -> &[Part] {
+        &self.parts
+    }
+
+    /// Whether it is one colour.
+    pub fn is_solid(&self) -> bool {
+        matches!(
+            self.parts[..],
+            [Part {
+                pattern: Pattern::Solid { .. },
+                ..
+            }]
+        )
+    }
+
+    /// Size of the finest thing to be seen on it; infinite where it is one colour.
+    pub fn finest(&self) -> f32 {
+        self.finest
+    }
+
+    fn push(&mut self, pattern: &Pattern, frame: Frame) -> usize {
+        if let Pattern::Placed {
+            pattern,
+            rows,
+            offset,
+        } = pattern
+        {
+            return self.push(pattern, frame.then(rows, *offset));
+        }
+        let finest = match pattern {
+            Pattern::Checker { size, .. } | Pattern::Stripes { size, .. } => *size,
+            Pattern::Noise { size, octaves, .. } => *size / (*octaves as f32 - 1.0).exp2(),
+            Pattern::Gradient { from, to, .. } => from.distance(*to),
+            Pattern::Triplanar { size, image, .. } => {
+                *size / image.width.max(image.height).max(1) as f32
+            }
+            Pattern::Solid { .. } | Pattern::Orbit { .. } | Pattern::Placed { .. } => f32::INFINITY,
+        };
+        let longer = mapped_scale(frame.rows.map(parameters));
+        self.finest = self.finest.min(finest / longer.max(f32::MIN_POSITIVE));
+        let number = self.parts.len();
+        self.parts.push(Part {
+            pattern: pattern.clone(),
+            inks: [PartInk::Colour(glam::Vec3::ZERO); 4],
+            frame: (frame != Frame::NONE).then_some(frame),
+        });
+        if let Pattern::Solid { colour } = pattern {
+            self.parts[number].inks[0] = PartInk::Colour(*colour);
+        }
+        for (k, ink) in pattern.inks().iter().enumerate() {
+            self.parts[number].inks[k] = match ink {
+                Ink::Colour(colour) => PartInk::Colour(*colour),
+                Ink::Pattern(inner) => PartInk::Part(self.push(inner, frame)),
+            };
+        }
+        number
+    }
+
+    /// The linear colour at a place.
+    #[inline(always)]
+    pub fn colour<R: PerLane>(&self, at: &Place<R>) -> Vec3<R> {
+        let (zero, one) = (at.width.lit(0.0), at.width.lit(1.0));
+        if let [
+            Part {
+                pattern: Pattern::Solid { colour },
+                ..
+            },
+        ] = self.parts[..]
+        {
+            return at.point.like(parameters(colour));
+        }
+        let mut shares = [zero; Pattern::MOST];
+        shares[0] = one;
+        let mut sum = Vec3::splat(zero);
+        for (number, part) in self.parts.iter().take(Pattern::MOST).enumerate() {
+            let share = shares[number];
+            let here = match &part.frame {
+                None => *at,
+                Some(frame) => {
+                    let rows = frame.rows.map(
+                        #[inline(always)]
+                        |row| at.point.like(parameters(row)),
+                    );
+                    let point = times(rows, at.point) + parameters(frame.offset);
+                    at.mapped(point, rows)
+                }
+            };
+            if let Pattern::Triplanar {
+                image,
+                size,
+                sharpness,
+            } = &part.pattern
+            {
+                let seen = R::each(
+                    here.point,
+                    here.normal,
+                    #[inline(always)]
+                    |p, n| triplanar(image, *size, *sharpness, p, n),
+                );
+                sum = sum + seen * share;
+                continue;
+            }
+            let of_inks = shares_of(&part.pattern, &here);
+            for (ink, of_ink) in part.inks.iter().zip(of_inks) {
+                let share = share * of_ink;
+                match ink {
+                    PartInk::Colour(colour) => {
+                        sum = sum + at.point.like(parameters(*colour)) * share
+                    }
+                    PartInk::Part(number) => shares[*number] = share,
+                }
+            }
+        }
+        sum
+    }
+
+    /// What it means as a number: its luminance, 0 to 1.
+    #[inline(always)]
+    pub fn number<R: PerLane>(&self, at: &Place<R>) -> R {
+        luminance_of(self.colour(at)).clamp01()
+    }
+
+    /// The unit normal at a place of the world whose heights this texture is, `depth` high where it is white; seen from direction `d`. `here` is
+    /// the same place in the space of the texture, and `rows` how it changes with the place.
+    #[inline(always)]
+    pub fn bump<R: PerLane>(
+        &self,
+        depth: f32,
+        at: &Place<R>,
+        here: &Place<R>,
+        rows: [Vec3<R>; 3],
+        d: Vec3<R>,
+    ) -> Vec3<R> {
+        let scale = mapped_scale(rows).max(f32::MIN_POSITIVE);
+        let step = here.width.max(self.finest.min(f32::MAX) * BUMP_STEP) / scale;
+        let across = basis(at.normal);
+        let height = luminance_of(self.colour(here));
+        let rise = across.map(
+            #[inline(always)]
+            |direction| {
+                let beside = Place {
+                    point: here.point + times(rows, direction * step),
+                    ..*here
+                };
+                (luminance_of(self.colour(&beside)) - height) * depth / (step * scale)
+            },
+        );
+        bumped(at.normal, across, rise, d)
+    }
+}
+
+/// How much of each of its inks a pattern shows at a place.
+#[inline(always)]
+fn shares_of<R: PerLane>(pattern: &Pattern, at: &Place<R>) -> [R; 4] {
+    let (zero, one) = (at.width.lit(0.0), at.width.lit(1.0));
+    let second = match pattern {
+        Pattern::Checker { size, .. } => checker(at, *size),
+        Pattern::Stripes {
+            direction, size, ..
+        } => stripes(at, parameters(*direction), *size),
+        Pattern::Noise { size, octaves, .. } => noise(at, *size, *octaves as f32),
+        Pattern::Gradient { from, to, .. } => gradient(at, parameters(*from), parameters(*to)),
+        Pattern::Orbit { .. } => return orbit(at),
+        Pattern::Solid { .. } | Pattern::Triplanar { .. } | Pattern::Placed { .. } => {
+            return [one, zero, zero, zero];
+        }
+    };
+    [second.one_minus(), second, zero, zero]
 }
 
 /// The image along the three axes, weighted by the normal.

@@ -191,6 +191,19 @@ pub fn refraction<R: Real>(d: Vec3<R>, n: Vec3<R>, ior: R) -> Refraction<R> {
     }
 }
 
+/// The direction of a ray that goes on from a surface on the side of its normal `face`: one that bumps would send to the other side goes
+/// along it.
+#[inline(always)]
+pub fn kept_on<R: Real>(direction: Vec3<R>, face: Vec3<R>) -> Vec3<R> {
+    let facing = face.dot(direction);
+    let lift = R::choose(facing.negative(), -facing + ALONG, facing.lit(0.0));
+    let kept = direction + face * lift;
+    kept / kept.length().max(1e-12)
+}
+
+/// Cosine between such a ray and the normal.
+const ALONG: f32 = 0.02;
+
 /// What remains of light after the way `t` through a body that takes `attenuation` of it per length (Beer's law).
 #[inline(always)]
 pub fn transmittance<R: Real>(attenuation: Vec3<R>, t: R) -> Vec3<R> {

@@ -115,6 +115,7 @@ fn constants() -> Vec<(&'static str, Value)> {
         ("LAINE_KARRAS_D", Whole(sampling::LAINE_KARRAS[3])),
         // patterns
         ("LEAST_WEIGHT", Number(pattern::LEAST_WEIGHT)),
+        ("BUMP_STEP", Number(pattern::BUMP_STEP)),
     ]
 }
 

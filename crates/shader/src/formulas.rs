@@ -154,18 +154,28 @@ formulas! {
     fn filter_mitchell(x: Number) = sampling::weight(Filter::Mitchell, x);
 
     // patterns
-    fn footprint_on(normal: Vec3, direction: Vec3, pixel: Number) = pattern::footprint(normal, direction, pixel);
-    fn pattern_checker(point: Vec3, normal: Vec3, footprint: Vec3, a: Vec3, b: Vec3, size: Number) =
-        pattern::checker(&place(point, normal, footprint), [a, b], size);
-    fn pattern_stripes(
-        point: Vec3, normal: Vec3, footprint: Vec3, a: Vec3, b: Vec3, direction: Vec3, size: Number
-    ) = pattern::stripes(&place(point, normal, footprint), [a, b], direction, size);
-    fn pattern_noise(point: Vec3, footprint: Vec3, a: Vec3, b: Vec3, size: Number, octaves: Number) =
-        pattern::noise(&place(point, point, footprint), [a, b], size, octaves);
-    fn pattern_gradient(point: Vec3, a: Vec3, b: Vec3, start: Vec3, end: Vec3) =
-        pattern::gradient(&place(point, point, point), [a, b], start, end);
-    fn pattern_orbit(orbit: Vec4, a: Vec3, b: Vec3, c: Vec3, d: Vec3) =
-        pattern::orbit(&place(a, a, a).with_orbit(orbit), [a, b, c, d]);
+    fn pixel_stretch(normal: Vec3, direction: Vec3, pixel: Number) = pattern::stretch(normal, direction, pixel);
+    fn mapped_normal(normal: Vec3, x: Vec3, y: Vec3, z: Vec3) = pattern::mapped_normal(normal, [x, y, z]);
+    fn mapped_scale(x: Vec3, y: Vec3, z: Vec3) = pattern::mapped_scale([x, y, z]);
+    fn pattern_checker(point: Vec3, normal: Vec3, width: Number, stretch: Vec3, size: Number) =
+        pattern::checker(&place(point, normal, width, stretch), size);
+    fn pattern_stripes(point: Vec3, normal: Vec3, width: Number, stretch: Vec3, direction: Vec3, size: Number) =
+        pattern::stripes(&place(point, normal, width, stretch), direction, size);
+    fn pattern_noise(point: Vec3, normal: Vec3, width: Number, stretch: Vec3, size: Number, octaves: Number) =
+        pattern::noise(&place(point, normal, width, stretch), size, octaves);
+    fn pattern_gradient(point: Vec3, start: Vec3, end: Vec3) =
+        pattern::gradient(&place(point, point, point.x, point), start, end);
+    fn pattern_orbit(orbit: Vec4) = {
+        let [x, ..] = orbit;
+        let any = zeroset_number::v3(x, x, x);
+        pattern::orbit(&place(any, any, x, any).with_orbit(orbit))
+    };
+    fn texture_number(colour: Vec3) = light::luminance_of(colour);
+    fn bumped_normal(normal: Vec3, across: Vec3, along: Vec3, rise: Vec2, direction: Vec3) =
+        pattern::bumped(normal, [across, along], [rise.x, rise.y], direction);
+    fn basis_across(normal: Vec3) = sampling::basis(normal)[0];
+    fn basis_along(normal: Vec3) = sampling::basis(normal)[1];
+    fn kept_on(direction: Vec3, face: Vec3) = surface::kept_on(direction, face);
     fn projection_weights(normal: Vec3, sharpness: Number) = pattern::projection_weights(normal, sharpness);
     fn projection(point: Vec3, normal: Vec3, axis: Number, size: Number) =
         pattern::projection(point, normal, axis, size);
@@ -283,12 +293,14 @@ fn size(p: Vec3<Expr<'_>>) -> Expr<'_> {
 fn place<'r>(
     point: Vec3<Expr<'r>>,
     normal: Vec3<Expr<'r>>,
-    footprint: Vec3<Expr<'r>>,
+    width: Expr<'r>,
+    stretch: Vec3<Expr<'r>>,
 ) -> Place<Expr<'r>> {
     Place {
         point,
         normal,
-        footprint,
+        width,
+        stretch,
         orbit: [point.x.lit(0.0); 4],
     }
 }
@@ -380,37 +392,41 @@ mod tests {
             let mut vector = || v3(any(), any(), any());
             let (p, n, d) = (vector() * 3.0, vector().normalize(), vector().normalize());
             let (a, b, c) = (vector(), vector(), vector().normalize());
-            let footprint = vector().abs() * 0.3;
+            let stretch = vector() * 0.3;
             let [x, y, z] = vector().array().map(f32::abs);
             let place = Place {
-                footprint,
-                ..Place::new(p, n, d, x)
+                stretch,
+                ..Place::new(p, n, d, 0.3 * z)
             };
             let (size, few) = (0.1 + x, 1.0 + (y * 5.0).floor());
+            let at = [flat(p), flat(n), Value::Float(0.3 * z), flat(stretch)];
+            let with = |more: &[Value]| [&at[..], more].concat();
             same(
                 "pattern_noise",
-                vec![
-                    flat(p),
-                    flat(footprint),
-                    flat(a),
-                    flat(b),
-                    Value::Float(size),
-                    Value::Float(few),
-                ],
-                &pattern::noise(&place, [a, b], size, few).array(),
+                with(&[Value::Float(size), Value::Float(few)]),
+                &[pattern::noise(&place, size, few)],
             );
             same(
                 "pattern_stripes",
+                with(&[flat(c), Value::Float(size)]),
+                &[pattern::stripes(&place, c, size)],
+            );
+            same(
+                "mapped_normal",
+                vec![flat(n), flat(a), flat(b), flat(c)],
+                &pattern::mapped_normal(n, [a, b, c]).array(),
+            );
+            let across = sampling::basis(n);
+            same(
+                "bumped_normal",
                 vec![
-                    flat(p),
                     flat(n),
-                    flat(footprint),
-                    flat(a),
-                    flat(b),
-                    flat(c),
-                    Value::Float(size),
+                    flat(across[0]),
+                    flat(across[1]),
+                    Value::Vector(vec![x, y]),
+                    flat(d),
                 ],
-                &pattern::stripes(&place, [a, b], c, size).array(),
+                &pattern::bumped(n, across, [x, y], d).array(),
             );
             same(
                 "leave_box",

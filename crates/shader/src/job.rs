@@ -1,14 +1,12 @@
 //! A scene as numbers for a shader: what changes from picture to picture, in buffers.
 
 use crate::entry::{CONE_SIDES, MARGIN};
-use crate::layout::{self, Frame, Light, Material, Occluder};
+use crate::field::place_number;
+use crate::layout::{self, Frame, Light, Material, Occluder, TexturePart};
 use crate::source::{Key, number, pattern_kind, reach};
 use crate::texture;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
-use zeroset_catalogue::bounds::Aabb;
-use zeroset_catalogue::entries::catalogue;
-use zeroset_field::field::Field;
 use zeroset_field::program::{Limits, Program};
 use zeroset_number::Grid;
 use zeroset_scene::accumulator::Sum;
@@ -21,8 +19,10 @@ use zeroset_scene::settings::{
     Antialias, Filter, Integrator, March, Occlusion, Settings, Shading, Shadow,
 };
 use zeroset_shade::air::Air;
+use zeroset_shade::coat::{Coat, compiled};
 use zeroset_shade::coverage::LAYERS;
 use zeroset_shade::light::luminance;
+use zeroset_shade::pattern::{Part, PartInk, Texture};
 use zeroset_shade::skin::has_skins;
 use zeroset_shade::view::{Region, View};
 
@@ -174,22 +174,10 @@ impl Parts {
         limits: &Limits,
         form: FieldForm,
     ) -> Result<Parts, RenderError> {
-        let (program, region) = match scene.field()? {
-            Some(field) => {
-                let program = Program::compile(&field, limits)?;
-                let region = Region::new(&program.bounds());
-                (program, region)
-            }
-            None => {
-                // no ray goes into an empty region: the program stands for nothing
-                let sphere = &catalogue().primitives[0];
-                let field = Field::primitive(sphere, sphere.info.defaults())?;
-                (Program::compile(&field, limits)?, Region::new(&Aabb::EMPTY))
-            }
-        };
+        let (program, region) = compiled(scene, limits)?;
         let images = images(scene);
         let grids = program.data().grids.clone();
-        let (table, mut frame) = tables(scene, &images, &grids, frame(scene, &region));
+        let (table, mut frame) = tables(scene, &program, &images, &grids, frame(scene, &region));
         frame.max_steps = program.patient(scene.settings().max_steps);
         frame.quality = u32::from(program.is_fractal())
             | u32::from(program.is_close()) << 1
@@ -372,23 +360,25 @@ fn seen(frame: Frame, camera: &Camera, size: [u32; 2], antialias: Antialias) -> 
 /// The images that materials show, each once.
 fn images(scene: &Scene) -> Vec<Arc<Image>> {
     let mut seen = HashSet::new();
-    let shown = scene.materials().iter().filter_map(|m| image(&m.pattern));
+    let patterns = scene
+        .materials()
+        .iter()
+        .flat_map(material::Material::patterns);
+    let parts = patterns.flat_map(|(_, pattern)| pattern.parts());
+    let shown = parts.filter_map(|part| match part {
+        Pattern::Triplanar { image, .. } => Some(image),
+        _ => None,
+    });
     shown
         .filter(|image| seen.insert(Arc::as_ptr(image)))
         .cloned()
         .collect()
 }
 
-fn image(pattern: &Pattern) -> Option<&Arc<Image>> {
-    match pattern {
-        Pattern::Triplanar { image, .. } => Some(image),
-        _ => None,
-    }
-}
-
 /// The table, and the frame that knows where in it everything is.
 fn tables(
     scene: &Scene,
+    program: &Program,
     images: &[Arc<Image>],
     grids: &[Arc<Grid>],
     mut frame: Frame,
@@ -408,20 +398,38 @@ fn tables(
         );
     }
     push(&mut table, occluder(scene.settings().occlusion));
-    frame.material_rows = table.len() as u32;
-    frame.materials = scene.materials().len() as u32;
-    let fallback = material::Material::default();
     let places: HashMap<*const Image, u64> = (images.iter().map(Arc::as_ptr))
         .zip(texture::starts(images))
         .collect();
     let is_path = matches!(scene.settings().integrator, Integrator::Path { .. });
     let clear = is_path || bounces(scene.settings()).is_some();
-    for material in scene.materials().iter().chain([&fallback]) {
-        let place = image(&material.pattern).and_then(|image| places.get(&Arc::as_ptr(image)));
-        push(
-            &mut table,
-            material_row(material, place.copied().unwrap_or(0), clear),
-        );
+    let mut coats = Coat::all(scene, program);
+    coats.push(Coat::new(&material::Material::default(), 0));
+    // a material that lies in several spaces has its textures once
+    let mut known: HashMap<u16, [f32; 4]> = HashMap::new();
+    let count = scene.materials().len();
+    let rows: Vec<Material> = (coats.iter().enumerate())
+        .map(|(number, coat)| {
+            let placed = number
+                .checked_sub(count)
+                .and_then(|k| program.coats().get(k));
+            let material = placed.map_or(number as u16, |coat| coat.material);
+            let textures = *known.entry(material).or_insert_with(|| {
+                coat.textures()
+                    .map(|texture| push_texture(&mut table, texture, &places))
+            });
+            material_row(
+                coat,
+                place_number(&program.structure().coats, coat.place),
+                textures,
+                clear,
+            )
+        })
+        .collect();
+    frame.material_rows = table.len() as u32;
+    frame.materials = coats.len() as u32 - 1;
+    for row in rows {
+        push(&mut table, row);
     }
     frame.grid_rows = table.len() as u32;
     for (grid, start) in grids.iter().zip(texture::starts(grids)) {
@@ -498,67 +506,110 @@ fn occluder(method: Occlusion) -> Occluder {
     }
 }
 
-/// `image`: the first texel of its image. `clear`: whether rays go through clear bodies; else these are shown as if they were none.
-fn material_row(material: &material::Material, image: u64, clear: bool) -> Material {
-    let zero = [0.0; 3];
-    let [image_row, image_column] = texture::place(image);
-    let mut row = Material {
-        kind: pattern_kind(&material.pattern) as f32,
+/// `place`: see [`place_number`]. `textures`: their first rows. `clear`: whether rays go through clear bodies; else these are shown as if
+/// they were none.
+fn material_row(coat: &Coat, place: u32, textures: [f32; 4], clear: bool) -> Material {
+    let material = &coat.material;
+    let [
+        albedo_texture,
+        roughness_texture,
+        metallic_texture,
+        bump_texture,
+    ] = textures;
+    let [.., bump] = coat.textures();
+    Material {
+        albedo: match &material.pattern {
+            Pattern::Solid { colour } => colour.to_array(),
+            _ => [0.0; 3],
+        },
+        place: place as f32,
+        emission: material.emission.to_array(),
         specular: material.specular,
+        attenuation: material.attenuation.to_array(),
         shininess: material.shininess,
         metallic: material.metallic,
         roughness: material.roughness,
         transmission: if clear { material.transmission } else { 0.0 },
         ior: material.ior,
-        attenuation: material.attenuation.to_array(),
-        emission: material.emission.to_array(),
-        image_row,
-        image_column,
+        albedo_texture,
+        roughness_texture,
+        metallic_texture,
+        bump_texture,
+        depth: material.bump.as_ref().map_or(0.0, |bump| bump.depth),
+        finest: bump.map_or(0.0, |texture| texture.finest().min(f32::MAX)),
         ..Material::default()
+    }
+}
+
+/// Appends a texture. Its first row, or 0 where it is none or one colour.
+fn push_texture(
+    table: &mut Vec<[f32; 4]>,
+    texture: Option<&Texture>,
+    images: &HashMap<*const Image, u64>,
+) -> f32 {
+    let Some(texture) = texture.filter(|t| !t.is_solid()) else {
+        return 0.0;
     };
-    let mut colours = |all: &[glam::Vec3]| {
-        let at = |k: usize| all.get(k).map_or(zero, |c| c.to_array());
-        (row.a, row.b, row.c, row.d) = (at(0), at(1), at(2), at(3));
+    // row 0 is that of none
+    if table.is_empty() {
+        table.push([0.0; 4]);
+    }
+    let first = table.len();
+    let parts = texture.parts();
+    for (number, part) in parts.iter().enumerate() {
+        push(table, part_row(part, parts.len() - number, images));
+    }
+    first as f32
+}
+
+/// `count`: of the parts from this one on.
+fn part_row(part: &Part, count: usize, images: &HashMap<*const Image, u64>) -> TexturePart {
+    let inks = part.inks.map(|ink| match ink {
+        PartInk::Colour(colour) => (colour.to_array(), 0.0),
+        PartInk::Part(number) => ([0.0; 3], number as f32),
+    });
+    let [a, b, c, d] = inks.map(|(colour, _)| colour);
+    let [instead_a, instead_b, instead_c, instead_d] = inks.map(|(_, part)| part);
+    let mut row = TexturePart {
+        a,
+        instead_a,
+        b,
+        instead_b,
+        c,
+        instead_c,
+        d,
+        instead_d,
+        kind: pattern_kind(&part.pattern) as f32,
+        count: count as f32,
+        still: if part.frame.is_none() { 1.0 } else { 0.0 },
+        ..TexturePart::default()
     };
-    match &material.pattern {
-        Pattern::Solid { colour } => colours(&[*colour]),
-        Pattern::Checker {
-            colours: [a, b],
-            size,
-        } => {
-            colours(&[*a, *b]);
-            row.size = *size;
-        }
+    if let Some(frame) = &part.frame {
+        [row.x, row.y, row.z] = frame.rows.map(|row| row.to_array());
+        [row.offset_x, row.offset_y, row.offset_z] = frame.offset.to_array();
+    }
+    match &part.pattern {
+        Pattern::Checker { size, .. } => row.size = *size,
         Pattern::Stripes {
-            colours: [a, b],
-            direction,
-            size,
-        } => {
-            colours(&[*a, *b, *direction]);
-            row.size = *size;
-        }
-        Pattern::Noise {
-            colours: [a, b],
-            size,
-            octaves,
-        } => {
-            colours(&[*a, *b]);
+            direction, size, ..
+        } => (row.start, row.size) = (direction.to_array(), *size),
+        Pattern::Noise { size, octaves, .. } => {
             (row.size, row.detail) = (*size, *octaves as f32);
         }
-        Pattern::Gradient {
-            colours: [a, b],
-            from,
-            to,
-        } => colours(&[*a, *b, *from, *to]),
+        Pattern::Gradient { from, to, .. } => {
+            (row.start, row.end) = (from.to_array(), to.to_array());
+        }
         Pattern::Triplanar {
             image,
             size,
             sharpness,
         } => {
+            let start = images.get(&Arc::as_ptr(image)).copied().unwrap_or(0);
+            [row.image_row, row.image_column] = texture::place(start);
             (row.size, row.detail) = (*size, *sharpness);
             (row.width, row.height) = (image.width as f32, image.height as f32);
         }
-        Pattern::Orbit { colours: all } => colours(all),
+        Pattern::Solid { .. } | Pattern::Orbit { .. } | Pattern::Placed { .. } => {}
     }
     row
 }

@@ -247,48 +247,100 @@ shared! {
         pad_c: f32,
     }
 
-    /// A material, as rows of the table.
+    /// A material as it lies on something, as rows of the table.
     Material {
-        /// Its place in `zeroset_scene::material::Pattern`.
-        kind: f32,
-        /// Size of the pattern, scene units.
-        size: f32,
-        /// Octaves of noise, or sharpness of a projection.
-        detail: f32,
-        /// Strength of the highlight.
-        specular: f32,
-        /// First colour.
-        a: [f32; 3],
-        /// Exponent of the highlight.
-        shininess: f32,
-        /// Second colour.
-        b: [f32; 3],
-        /// 0 plastic, 1 metal.
-        metallic: f32,
-        /// Third colour, a direction, or where a gradient begins.
-        c: [f32; 3],
-        /// 0 mirror, 1 chalk.
-        roughness: f32,
-        /// Fourth colour, or where a gradient ends.
-        d: [f32; 3],
-        /// Where the image begins: the row of its first texel through all layers of the texture.
-        image_row: f32,
+        /// Its colour, where it is one.
+        albedo: [f32; 3],
+        /// Which place in `Structure::coats` is that of the space that it lies in, plus one; 0 where that is the world.
+        place: f32,
         /// Light of its own.
         emission: [f32; 3],
-        /// Width of the image.
-        width: f32,
-        /// Height of the image.
-        height: f32,
-        /// Column of its first texel.
-        image_column: f32,
+        /// Strength of the highlight.
+        specular: f32,
+        /// What light loses inside over a scene unit.
+        attenuation: [f32; 3],
+        /// Exponent of the highlight.
+        shininess: f32,
+        /// 0 plastic, 1 metal.
+        metallic: f32,
+        /// 0 mirror, 1 chalk.
+        roughness: f32,
         /// 0 opaque, 1 glass.
         transmission: f32,
         /// Index of refraction.
         ior: f32,
-        /// What light loses inside over a scene unit.
-        attenuation: [f32; 3],
+        /// First row of the texture of its colour; 0 where it is one colour.
+        albedo_texture: f32,
+        /// That of its roughness.
+        roughness_texture: f32,
+        /// That of how metallic it is.
+        metallic_texture: f32,
+        /// That of its heights.
+        bump_texture: f32,
+        /// How high white is.
+        depth: f32,
+        /// Size of the finest thing in the texture of its heights.
+        finest: f32,
         /// Not used.
-        pad: f32,
+        pad_a: f32,
+        /// Not used.
+        pad_b: f32,
+    }
+
+    /// A part of a texture, as rows of the table.
+    TexturePart {
+        /// First colour.
+        a: [f32; 3],
+        /// The part that is shown in its stead, by number; 0 for none.
+        instead_a: f32,
+        /// Second colour.
+        b: [f32; 3],
+        /// In its stead.
+        instead_b: f32,
+        /// Third colour.
+        c: [f32; 3],
+        /// In its stead.
+        instead_c: f32,
+        /// Fourth colour.
+        d: [f32; 3],
+        /// In its stead.
+        instead_d: f32,
+        /// A direction, or where a gradient begins.
+        start: [f32; 3],
+        /// Its place in `zeroset_scene::material::Pattern`.
+        kind: f32,
+        /// Where a gradient ends.
+        end: [f32; 3],
+        /// Size, scene units.
+        size: f32,
+        /// First row of the matrix that leads to where it lies.
+        x: [f32; 3],
+        /// First part of its offset.
+        offset_x: f32,
+        /// Second row.
+        y: [f32; 3],
+        /// Second part.
+        offset_y: f32,
+        /// Third row.
+        z: [f32; 3],
+        /// Third part.
+        offset_z: f32,
+        /// Octaves of noise, or sharpness of a projection.
+        detail: f32,
+        /// How many parts there are from this one on, of the same texture.
+        count: f32,
+        /// 1 where it lies as the texture does.
+        still: f32,
+        /// Not used.
+        pad_a: f32,
+        /// Where the image begins: the row of its first texel through all layers of the texture.
+        image_row: f32,
+        /// Column of its first texel.
+        image_column: f32,
+        /// Width of the image.
+        width: f32,
+        /// Height of the image.
+        height: f32,
     }
 
     /// A grid of samples, as a row of the table.

@@ -6,8 +6,8 @@ use crate::field::FieldSource;
 use crate::formulas;
 use crate::job::{FieldForm, LONGEST_COMPILED, bounces};
 use crate::layout::{
-    Frame, Grid, Light, LightSum, Material, Occluder, Sample, Shared, SurfaceSum, Tile, loader,
-    rows,
+    Frame, Grid, Light, LightSum, Material, Occluder, Sample, Shared, SurfaceSum, TexturePart,
+    Tile, loader, rows,
 };
 use crate::texture;
 use std::cmp::Ordering;
@@ -59,7 +59,16 @@ pub(crate) struct Key {
     /// Whether any light casts a shadow.
     shadows: bool,
     patterns: BTreeSet<Case>,
+    /// Most parts of a texture.
+    texture_parts: u32,
+    /// How often a place is looked at: for its colour, or also for its finish, or also for its heights and those beside it.
+    looks: u32,
 }
+
+/// Textures of a colour, of roughness, and of how metallic something is.
+const LOOKS: u32 = 3;
+/// Those, and heights at three places.
+const LOOKS_WITH_BUMPS: u32 = 6;
 
 /// A part of the text that a method needs. Equal names, equal texts.
 #[derive(Clone, Copy, Debug)]
@@ -165,10 +174,25 @@ impl Key {
             ways: ways(scene.settings()),
             occlusion: methods.filter_map(occlusion).collect(),
             shadows: scene.lights().iter().any(|l| casts(&l.shadow)),
-            patterns: (scene.materials().iter())
-                .filter_map(|m| pattern(&m.pattern))
-                .collect(),
+            patterns: BTreeSet::new(),
+            texture_parts: 0,
+            looks: 0,
         };
+        for material in scene.materials() {
+            for (name, whole) in material.patterns() {
+                key.patterns.extend(whole.parts().filter_map(pattern));
+                let parts = whole
+                    .parts()
+                    .filter(|p| !matches!(p, Pattern::Placed { .. }));
+                key.texture_parts = key.texture_parts.max(parts.count() as u32);
+                let looks = match name {
+                    "pattern" => 1,
+                    "bump" => LOOKS_WITH_BUMPS,
+                    _ => LOOKS,
+                };
+                key.looks = key.looks.max(looks);
+            }
+        }
         if form == FieldForm::Auto {
             key.interpreted = key.length() > LONGEST_COMPILED;
         }
@@ -276,6 +300,7 @@ impl Key {
             Light::declaration(),
             Occluder::declaration(),
             Material::declaration(),
+            TexturePart::declaration(),
             Sample::declaration(),
         ] {
             text += &declaration;
@@ -284,6 +309,7 @@ impl Key {
             ("LIGHT", rows::<Light>()),
             ("OCCLUDER", rows::<Occluder>()),
             ("MATERIAL", rows::<Material>()),
+            ("TEXTUREPART", rows::<TexturePart>()),
         ] {
             // writing to a string cannot fail
             let _ = writeln!(text, "const {name}_ROWS: u32 = {rows}u;");
@@ -292,6 +318,7 @@ impl Key {
         text += &loader::<Light>();
         text += &loader::<Occluder>();
         text += &loader::<Material>();
+        text += &loader::<TexturePart>();
         if self.reads_grids() {
             text += &grids();
         }
@@ -312,7 +339,7 @@ impl Key {
         if !self.in_turns {
             text += NEVER;
         }
-        text += &self.pattern_colour();
+        text += &self.textures();
         text += &self.occlusion();
         if self.secondary() {
             text += &penumbrae();
@@ -398,17 +425,49 @@ impl Key {
         names.extend(stages.flat_map(|stage| stage.formulas));
         let cases = self.occlusion.iter().chain(&self.patterns);
         names.extend(cases.flat_map(|case| case.formulas));
+        if self.has_textures() {
+            names.extend(TEXTURES);
+        }
         names
     }
 
-    /// The function that tells patterns apart.
-    fn pattern_colour(&self) -> String {
-        switch(
-            "fn pattern_colour(m: Material, at: Place) -> vec3f",
-            "m.kind",
-            self.patterns.iter().map(|case| (case.kind, case.call)),
-            "m.a",
-        )
+    /// Whether any material has a texture.
+    fn has_textures(&self) -> bool {
+        !self.patterns.is_empty() || self.looks > 1
+    }
+
+    /// What finds how materials look somewhere.
+    fn textures(&self) -> String {
+        let mut text = if self.structure.coats.is_empty() {
+            include_str!("stage/space_world.wgsl").to_owned()
+        } else {
+            include_str!("stage/space.wgsl").to_owned()
+        };
+        if !self.has_textures() {
+            return text + include_str!("stage/texture_none.wgsl");
+        }
+        let has = |name: &str| {
+            let own = self.patterns.iter().filter_map(|case| case.stage);
+            { own }.any(|stage| stage.name == name)
+        };
+        text += &switch(
+            "fn pattern_shares(part: TexturePart, at: Place) -> vec4f",
+            "part.kind",
+            (self.patterns.iter())
+                .filter(|case| !case.has_image)
+                .map(|case| (case.kind, case.call)),
+            "vec4f(1.0, 0.0, 0.0, 0.0)",
+        );
+        if !has("pattern_triplanar") {
+            text += include_str!("stage/pattern_no_image.wgsl");
+        }
+        // writing to a string cannot fail
+        let _ = writeln!(
+            text,
+            "const TEXTURE_PARTS: u32 = {}u;\nconst LOOKS: u32 = {}u;",
+            self.texture_parts, self.looks
+        );
+        text + include_str!("stage/texture.wgsl")
     }
 
     /// The function that tells occlusion methods apart.
@@ -513,8 +572,16 @@ fn switch<'a>(
     )
 }
 
+/// Formulas of textures.
+const TEXTURES: [&str; 4] = [
+    "texture_number",
+    "bumped_normal",
+    "basis_across",
+    "basis_along",
+];
+
 /// Formulas that every picture needs.
-const EVERYWHERE: [&str; 23] = [
+const EVERYWHERE: [&str; 25] = [
     "false_position",
     "on_plane",
     "pinhole_ray",
@@ -531,7 +598,9 @@ const EVERYWHERE: [&str; 23] = [
     "filter_box",
     "filter_tent",
     "filter_mitchell",
-    "footprint_on",
+    "pixel_stretch",
+    "mapped_normal",
+    "mapped_scale",
     "sky_colour",
     "towards_point",
     "transmittance",
@@ -607,7 +676,8 @@ fn ways(settings: &Settings) -> &'static [Stage] {
                 "ways_whitted",
                 "mirror_reflectance",
                 "followed_share",
-                "border"
+                "border",
+                "kept_on"
             ),
         ],
         Integrator::Whitted { .. } | Integrator::Direct => {
@@ -767,37 +837,33 @@ fn pattern(pattern: &Pattern) -> Option<Case> {
         })
     };
     match pattern {
-        Pattern::Solid { .. } => None,
+        Pattern::Solid { .. } | Pattern::Placed { .. } => None,
         Pattern::Checker { .. } => case(
             None,
-            "pattern_checker(at.point, at.normal, at.footprint, m.a, m.b, m.size)",
+            "two_inks(pattern_checker(at.point, at.normal, at.width, at.stretch, part.size))",
             &["pattern_checker"],
         ),
         Pattern::Stripes { .. } => case(
             None,
-            "pattern_stripes(at.point, at.normal, at.footprint, m.a, m.b, m.c, m.size)",
+            "two_inks(pattern_stripes(at.point, at.normal, at.width, at.stretch, part.start, part.size))",
             &["pattern_stripes"],
         ),
         Pattern::Noise { .. } => case(
             None,
-            "pattern_noise(at.point, at.footprint, m.a, m.b, m.size, m.detail)",
+            "two_inks(pattern_noise(at.point, at.normal, at.width, at.stretch, part.size, part.detail))",
             &["pattern_noise"],
         ),
         Pattern::Gradient { .. } => case(
             None,
-            "pattern_gradient(at.point, m.a, m.b, m.c, m.d)",
+            "two_inks(pattern_gradient(at.point, part.start, part.end))",
             &["pattern_gradient"],
         ),
         Pattern::Triplanar { .. } => case(
             Some(stage!("pattern_triplanar")),
-            "pattern_triplanar(m, at)",
+            "",
             &["projection_weights", "projection"],
         ),
-        Pattern::Orbit { .. } => case(
-            None,
-            "pattern_orbit(at.orbit, m.a, m.b, m.c, m.d)",
-            &["pattern_orbit"],
-        ),
+        Pattern::Orbit { .. } => case(None, "pattern_orbit(at.orbit)", &["pattern_orbit"]),
     }
 }
 
@@ -811,5 +877,6 @@ pub(crate) fn pattern_kind(pattern: &Pattern) -> u32 {
         Pattern::Gradient { .. } => 4,
         Pattern::Triplanar { .. } => 5,
         Pattern::Orbit { .. } => 6,
+        Pattern::Placed { .. } => 7,
     }
 }

@@ -191,6 +191,12 @@ fn structure(values: Vec<Instruction>, marks: Vec<Instruction>) -> Structure {
         values: code(values),
         marks: code(marks),
         sides: Vec::new(),
+        places: Code {
+            instructions: Vec::new(),
+            registers: 3,
+            result: 0,
+        },
+        coats: Vec::new(),
     }
 }
 

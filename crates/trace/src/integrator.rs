@@ -57,7 +57,7 @@ impl Integrator for Direct {
 /// Finds what the hits are made of and how much of the sky they see. No ray goes on yet.
 pub(crate) fn identify<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
     occlude(s, sample, q);
-    materials(s, sample.job, sample.solid, &mut q.hits);
+    materials(s, sample.job, sample.solid, q);
     q.hits.followed[..q.hits.count].fill(0.0);
 }
 
@@ -226,15 +226,7 @@ pub(crate) fn add_light<S: Simd>(
                 let d = hits.ray(s, i).direction;
                 let to = aim(i, load3(s, &hits.point, i));
                 let finish = hits.material.finish(s, shading, i);
-                let got = arrival(
-                    shading,
-                    light,
-                    to,
-                    load3(s, &hits.normal, i),
-                    d,
-                    lit,
-                    finish,
-                );
+                let got = arrival(shading, light, to, load3(s, &hits.shown, i), d, lit, finish);
                 let (diffuse, gloss) = (load3(s, &hits.diffuse, i), load3(s, &hits.gloss, i));
                 store3(diffuse + got.diffuse, &mut hits.diffuse, i);
                 store3(gloss + got.gloss, &mut hits.gloss, i);
@@ -281,7 +273,7 @@ pub(crate) fn shade<S: Simd>(
                     grazing: load3(s, &hits.grazing, i) * shone,
                     open: load(s, &hits.open, i),
                     bent: load3(s, &hits.bent, i),
-                    normal: load3(s, &hits.normal, i),
+                    normal: load3(s, &hits.shown, i),
                     direction: hits.ray(s, i).direction,
                 };
                 let followed = load(s, &hits.followed, i);

@@ -24,6 +24,7 @@ use zeroset_scene::material::Material;
 use zeroset_scene::progressive::{MOST, SampleMap};
 use zeroset_scene::settings::{self, Antialias, Filter};
 use zeroset_shade::air::behind;
+use zeroset_shade::coat::Coat;
 use zeroset_shade::light::discs;
 use zeroset_shade::sampling::{point, scramble};
 use zeroset_shade::sky::SkyColours;
@@ -46,7 +47,7 @@ pub(crate) struct Job<'a> {
     /// Whether the marks of hits differ and are needed.
     marks: bool,
     /// What a surface without a material is made of.
-    pub(crate) fallback: Material,
+    pub(crate) fallback: Coat,
 }
 
 impl<'a> Job<'a> {
@@ -79,7 +80,7 @@ impl<'a> Job<'a> {
             marks: picture.material.is_none()
                 || picture.has_orbits
                 || (objects && picture.object.is_none()),
-            fallback: Material::default(),
+            fallback: Coat::new(&Material::default(), 0),
         }
     }
 

@@ -61,7 +61,7 @@ impl Integrator for PathTracer {
     fn integrate<S: Simd>(&self, s: S, sample: &TileSample<'_>, q: &mut Scratch) {
         let all = 0..q.hits.count;
         ao::occlusion(s, sample.solid, Occlusion::None, all, q);
-        materials(s, sample.job, sample.solid, &mut q.hits);
+        materials(s, sample.job, sample.solid, q);
         q.hits.followed[..q.hits.count].fill(1.0);
         darken(q);
         for (number, light) in sample.job.picture.scene.lights().iter().enumerate() {
@@ -200,7 +200,7 @@ impl PathTracer {
                     let random = load3(s, &bounce.random, i);
                     let way = scatter(
                         &what,
-                        load3(s, &hits.normal, i),
+                        load3(s, &hits.shown, i),
                         hits.ray(s, i).direction,
                         load(s, &bounce.ior, i),
                         tint,
@@ -258,6 +258,12 @@ impl PathTracer {
         };
         let ray = hits.rays.get(&hits.common, i);
         let side = if through { -1.0 } else { 1.0 };
+        // what bumps send behind the surface that they are on is lost
+        if sample.job.picture.has_bumps
+            && hits.normal(i).dot(vector(&bounce.direction)) * side <= 0.0
+        {
+            return None;
+        }
         Some((
             WideRay {
                 origin: hits.point(i) + hits.normal(i) * (hits.offset[i] * side),

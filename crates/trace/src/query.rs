@@ -315,7 +315,7 @@ impl Query<'_> {
                     point: vector(&hits.point, i),
                     normal: vector(&hits.normal, i),
                     object: number(hits.object[i]),
-                    material: number(hits.first[i]),
+                    material: number(hits.first[i]).map(|m| query.picture.material_of(m)),
                     inside: hits.word[i] & INSIDE != 0,
                 };
                 ((hits.word[i] & ORDINAL) as usize, hit)

@@ -12,21 +12,19 @@ use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
 use web_time::Instant;
-use zeroset_catalogue::bounds::Aabb;
-use zeroset_catalogue::entries::catalogue;
 use zeroset_catalogue::tape::Operation;
-use zeroset_field::field::Field;
 use zeroset_field::program::{Limits, Program};
 use zeroset_number::at_level;
 use zeroset_scene::accumulator::{self, Accumulator, Sum};
 use zeroset_scene::camera::Camera;
 use zeroset_scene::film::{Film, Plane, SUMS};
-use zeroset_scene::material::Pattern;
+use zeroset_scene::material::{Material, Pattern};
 use zeroset_scene::progressive::{MOST, SampleMap};
 use zeroset_scene::render::{Evaluations, Observer, Prepared, RenderError, Renderer, Statistics};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Occlusion, Settings};
 use zeroset_shade::air::Air;
+use zeroset_shade::coat::{Coat, compiled};
 use zeroset_shade::skin::has_skins;
 use zeroset_shade::surface::BLURRED;
 use zeroset_shade::view::Region;
@@ -151,6 +149,10 @@ pub struct PreparedScene {
     pub(crate) air: Air<f32>,
     /// Whether rays go on from any material.
     pub(crate) goes_on: bool,
+    /// The materials as they lie on things, by their numbers as marks.
+    pub(crate) coats: Vec<Coat>,
+    /// Whether any of them is shown with heights.
+    pub(crate) has_bumps: bool,
     /// Whether a material is coloured by the orbits of fractals.
     pub(crate) has_orbits: bool,
     /// Occlusion methods that objects chose, each once; the first is the scene's.
@@ -199,12 +201,16 @@ impl PreparedScene {
                 methods.len() - 1
             }));
         }
-        let has_orbits =
-            (scene.materials().iter()).any(|m| matches!(m.pattern, Pattern::Orbit { .. }));
-        let goes_on =
-            (scene.materials().iter()).any(|m| m.roughness < BLURRED || m.transmission > 0.0);
+        let parts = (scene.materials().iter())
+            .flat_map(Material::patterns)
+            .flat_map(|(_, pattern)| pattern.parts());
+        let has_orbits = { parts }.any(|part| matches!(part, Pattern::Orbit { .. }));
+        let goes_on = (scene.materials().iter())
+            .any(|m| m.least_roughness() < BLURRED || m.transmission > 0.0);
         PreparedScene {
             goes_on,
+            has_bumps: scene.materials().iter().any(|m| m.bump.is_some()),
+            coats: Coat::all(&scene, &program),
             air: Air::of(scene.sky(), scene.lights()),
             renderer,
             skins: has_skins(&scene, &program),
@@ -237,6 +243,13 @@ impl PreparedScene {
         (self.spare.lock())
             .unwrap_or_else(PoisonError::into_inner)
             .push(q);
+    }
+
+    /// The number of the material that marks stand for.
+    pub(crate) fn material_of(&self, mark: usize) -> usize {
+        let placed = mark.checked_sub(self.scene.materials().len());
+        let coat = placed.and_then(|k| self.program.coats().get(k));
+        coat.map_or(mark, |coat| usize::from(coat.material))
     }
 
     /// What the scene compiled to.
@@ -368,19 +381,6 @@ impl Prepared for PreparedScene {
             Err(RenderError::Cancelled)
         }
     }
-}
-
-/// The field of a scene, and where its solid is.
-fn compiled(scene: &Scene, limits: &Limits) -> Result<(Program, Region), RenderError> {
-    if let Some(field) = scene.field()? {
-        let program = Program::compile(&field, limits)?;
-        let region = Region::new(&program.bounds());
-        return Ok((program, region));
-    }
-    // no ray goes into an empty region: the program stands for nothing
-    let sphere = &catalogue().primitives[0];
-    let field = Field::primitive(sphere, sphere.info.defaults())?;
-    Ok((Program::compile(&field, limits)?, Region::new(&Aabb::EMPTY)))
 }
 
 /// Rows of sums that tiles beside each other add to.

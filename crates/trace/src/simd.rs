@@ -5,7 +5,7 @@ use fearless_simd::{Simd, prelude::*};
 use std::ops::{Deref, DerefMut};
 use zeroset_eval::{BATCH, Lane};
 use zeroset_number::lanes::LaneMask;
-use zeroset_number::{Lanes, Real, Vec3, v3};
+use zeroset_number::{Lanes, Vec3, v3};
 
 /// Lanes behind the last one that vectors may write garbage to.
 pub(crate) const SLACK: usize = 64;
@@ -170,12 +170,6 @@ pub(crate) fn store3<S: Simd, C: Numbers>(x: Vec3<Lanes<S>>, columns: &mut [C; 3
 #[inline(always)]
 pub(crate) fn splat<S: Simd>(s: S, c: f32) -> Lanes<S> {
     Lanes(S::f32s::splat(s, c))
-}
-
-/// `c` as numbers of the company of `x`.
-#[inline(always)]
-pub(crate) fn constant<R: Real<Scalar = f32>>(x: R, c: [f32; 3]) -> Vec3<R> {
-    v3(x.lit(c[0]), x.lit(c[1]), x.lit(c[2]))
 }
 
 /// `c` in every lane.

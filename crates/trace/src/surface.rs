@@ -1,29 +1,88 @@
 //! What the surface is at the hits: to which objects and materials they belong, and what these are made of there.
 
 use crate::job::Job;
-use crate::simd::{Sheet, constant, load, load3, splat, store, store3};
+use crate::simd::{Sheet, load, load3, splat, store, store3};
 use crate::tile::{Hits, Scratch, Solid};
 use fearless_simd::{Simd, prelude::*};
-use zeroset_eval::{BATCH, Lane};
-use zeroset_number::{Lanes, Ops, Real, v3};
+use std::ops::Range;
+use zeroset_eval::{BATCH, Lane, Workspace};
+use zeroset_number::{Lanes, Ops, Real, Vec3, v3};
 use zeroset_scene::material::Material;
 use zeroset_scene::settings::Shading;
+use zeroset_shade::coat::{Coat, unmapped};
 use zeroset_shade::march::MARKS_BEHIND;
-use zeroset_shade::pattern::{Place, colour as pattern_colour};
+use zeroset_shade::pattern::Place;
 use zeroset_shade::surface::{BLURRED, LocalMaterial};
+
+/// What a surface is made of, and its normal with the heights that it is shown with.
+#[derive(Clone, Copy)]
+struct Local<S: Simd> {
+    what: LocalMaterial<Lanes<S>>,
+    normal: Vec3<Lanes<S>>,
+}
+
+/// What the hits of a batch know of where they are.
+struct Spaces<'w> {
+    /// The places in the spaces of coats, for hits from `first` on.
+    work: &'w Workspace,
+    first: usize,
+}
+
+impl Spaces<'_> {
+    /// A share of one coat at the hits from `i` on, which rays of direction `d` meet.
+    #[inline(always)]
+    fn local<S: Simd>(
+        &self,
+        s: S,
+        coat: &Coat,
+        i: usize,
+        at: &Place<Lanes<S>>,
+        d: Vec3<Lanes<S>>,
+        weight: Lanes<S>,
+    ) -> Local<S> {
+        let (here, rows) = if coat.place == 0 {
+            (*at, unmapped(at))
+        } else {
+            let lanes = self.work.place(coat.place);
+            let k = i - self.first;
+            let of =
+                |lane: usize| Lanes(S::f32s::from_slice(s, &lanes[lane].0[k..][..S::f32s::LEN]));
+            let point = v3(of(0), of(4), of(8));
+            let rows = [
+                v3(of(1), of(2), of(3)),
+                v3(of(5), of(6), of(7)),
+                v3(of(9), of(10), of(11)),
+            ];
+            (at.mapped(point, rows), rows)
+        };
+        let what = coat.local(&here);
+        Local {
+            normal: coat.normal(at, &here, rows, d) * weight,
+            what: LocalMaterial {
+                albedo: what.albedo * weight,
+                emission: what.emission * weight,
+                specular: what.specular * weight,
+                metallic: what.metallic * weight,
+                roughness: what.roughness * weight,
+                transmission: what.transmission * weight,
+                shininess: what.shininess * weight,
+            },
+        }
+    }
+}
 
 impl Job<'_> {
     pub(crate) fn material(&self, number: f32) -> &Material {
+        &self.coat(number).material
+    }
+
+    fn coat(&self, number: f32) -> &Coat {
         let at = if number >= 0.0 {
             number as usize
         } else {
             usize::MAX
         };
-        self.picture
-            .scene
-            .materials()
-            .get(at)
-            .unwrap_or(&self.fallback)
+        self.picture.coats.get(at).unwrap_or(&self.fallback)
     }
 
     /// What the surface is made of at the hits from `i` on: of each material that any of them has, as much as they have.
@@ -32,11 +91,14 @@ impl Job<'_> {
         &self,
         s: S,
         hits: &Hits,
+        spaces: &Spaces<'_>,
         i: usize,
         at: &Place<Lanes<S>>,
-    ) -> LocalMaterial<Lanes<S>> {
+        d: Vec3<Lanes<S>>,
+    ) -> Local<S> {
         if let Some(only) = self.picture.material {
-            return whole(self.material(f32::from(only)), at, splat(s, 1.0));
+            let coat = self.coat(f32::from(only));
+            return spaces.local(s, coat, i, at, d, splat(s, 1.0));
         }
         let lanes = S::f32s::LEN.min(hits.count - i);
         let (first, second, share) = (
@@ -44,7 +106,7 @@ impl Job<'_> {
             load(s, &hits.second, i),
             load(s, &hits.share, i),
         );
-        let mut sum: Option<LocalMaterial<Lanes<S>>> = None;
+        let mut sum: Option<Local<S>> = None;
         let mut last = f32::NEG_INFINITY;
         loop {
             // the next material in the order of their numbers
@@ -69,49 +131,65 @@ impl Job<'_> {
             let zero = splat(s, 0.0);
             let weight = Lanes::select(not_first, zero, share.one_minus())
                 + Lanes::select(not_second, zero, share);
-            let part = whole(self.material(number), at, weight);
+            let part = spaces.local(s, self.coat(number), i, at, d, weight);
             sum = Some(match sum {
                 None => part,
-                Some(all) => LocalMaterial {
-                    albedo: all.albedo + part.albedo,
-                    emission: all.emission + part.emission,
-                    specular: all.specular + part.specular,
-                    metallic: all.metallic + part.metallic,
-                    roughness: all.roughness + part.roughness,
-                    transmission: all.transmission + part.transmission,
-                    shininess: all.shininess + part.shininess,
+                Some(Local { what: all, normal }) => Local {
+                    normal: normal + part.normal,
+                    what: LocalMaterial {
+                        albedo: all.albedo + part.what.albedo,
+                        emission: all.emission + part.what.emission,
+                        specular: all.specular + part.what.specular,
+                        metallic: all.metallic + part.what.metallic,
+                        roughness: all.roughness + part.what.roughness,
+                        transmission: all.transmission + part.what.transmission,
+                        shininess: all.shininess + part.what.shininess,
+                    },
                 },
             });
         }
         match sum {
             Some(all) => all,
-            None => whole(&self.fallback, at, splat(s, 1.0)),
+            None => spaces.local(s, &self.fallback, i, at, d, splat(s, 1.0)),
         }
     }
 }
 
-/// A share of one material.
-#[inline(always)]
-fn whole<S: Simd>(m: &Material, at: &Place<Lanes<S>>, weight: Lanes<S>) -> LocalMaterial<Lanes<S>> {
-    LocalMaterial {
-        albedo: pattern_colour(&m.pattern, at) * weight,
-        emission: constant(weight, m.emission.to_array()) * weight,
-        specular: weight * m.specular,
-        metallic: weight * m.metallic,
-        roughness: weight * m.roughness,
-        transmission: weight * m.transmission,
-        shininess: weight * m.shininess,
+/// Finds what the surface is made of at the hits, and the normals that it is shown with.
+pub(crate) fn materials<S: Simd>(s: S, job: &Job<'_>, solid: &Solid<'_>, q: &mut Scratch) {
+    for first in (0..q.hits.count).step_by(BATCH) {
+        let n = (q.hits.count - first).min(BATCH);
+        if !solid.program.coats().is_empty() {
+            for (column, x) in q.work.points_mut().iter_mut().zip(&q.hits.point) {
+                column.0[..n].copy_from_slice(&x[first..first + n]);
+                // those behind must be numbers
+                let last = column.0[n - 1];
+                column.0[n..].fill(last);
+            }
+            zeroset_eval::places(s, solid.program.places(), &mut q.work, n);
+        }
+        let spaces = Spaces {
+            work: &q.work,
+            first,
+        };
+        batch_of_materials(s, job, solid, &spaces, first..first + n, &mut q.hits);
     }
 }
 
-/// Finds what the surface is made of at the hits.
-pub(crate) fn materials<S: Simd>(s: S, job: &Job<'_>, solid: &Solid<'_>, hits: &mut Hits) {
+fn batch_of_materials<S: Simd>(
+    s: S,
+    job: &Job<'_>,
+    solid: &Solid<'_>,
+    spaces: &Spaces<'_>,
+    range: Range<usize>,
+    hits: &mut Hits,
+) {
     s.vectorize(
         #[inline(always)]
         || {
             // with more rays a pixel each stands for less of it
             let finer = 1.0 / (job.samples() as f32).sqrt();
-            for i in (0..hits.count).step_by(S::f32s::LEN) {
+            for i in range.step_by(S::f32s::LEN) {
                 let ray = hits.ray(s, i);
                 let pixel = solid.width(&ray, load(s, &hits.t, i)) * finer;
                 let (point, normal) = (load3(s, &hits.point, i), load3(s, &hits.normal, i));
@@ -125,8 +203,14 @@ pub(crate) fn materials<S: Simd>(s: S, job: &Job<'_>, solid: &Solid<'_>, hits: &
                         load(s, &o[3], i),
                     ]);
                 }
-                let what = job.local_material(s, hits, i, &place);
-                hits.material.store(&what, i);
+                let local = job.local_material(s, hits, spaces, i, &place, ray.direction);
+                hits.material.store(&local.what, i);
+                let shown = if job.picture.has_bumps {
+                    local.normal / local.normal.length().max(f32::MIN_POSITIVE)
+                } else {
+                    normal
+                };
+                store3(shown, &mut hits.shown, i);
             }
         },
     );

@@ -189,6 +189,8 @@ pub(crate) struct Hits {
     pub(crate) residual: Box<Sheet>,
     pub(crate) point: [Box<Sheet>; 3],
     pub(crate) normal: [Box<Sheet>; 3],
+    /// The normal that light meets: with the heights of bumps.
+    pub(crate) shown: [Box<Sheet>; 3],
     /// How far secondary rays start from the surface.
     pub(crate) offset: Box<Sheet>,
     /// The ball of this radius that touches the place where secondary rays start, on the side of the normal, is empty. Zero
@@ -230,6 +232,12 @@ impl Hits {
     /// The place of hit number `i`.
     pub(crate) fn point(&self, i: usize) -> Vec3<f32> {
         let [x, y, z] = &self.point;
+        v3(x[i], y[i], z[i])
+    }
+
+    /// The normal of hit number `i` that light meets.
+    pub(crate) fn shown(&self, i: usize) -> Vec3<f32> {
+        let [x, y, z] = &self.shown;
         v3(x[i], y[i], z[i])
     }
 
@@ -357,6 +365,7 @@ impl Scratch {
                 residual: Sheet::boxed(),
                 point: sheet3(),
                 normal: sheet3(),
+                shown: sheet3(),
                 offset: Sheet::boxed(),
                 ball: Sheet::boxed(),
                 object: Sheet::boxed(),

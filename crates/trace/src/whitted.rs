@@ -9,7 +9,7 @@ use crate::tile::Scratch;
 use fearless_simd::Simd;
 use zeroset_number::v3;
 use zeroset_scene::settings::Shading;
-use zeroset_shade::surface::{FAINTEST, followed_share, mirrored, refraction};
+use zeroset_shade::surface::{FAINTEST, followed_share, kept_on, mirrored, refraction};
 
 /// As [`Direct`](crate::integrator::Direct), and on: smooth surfaces reflect what rays find there, clear bodies let rays through (Whitted 1980; Keinert et al. 2014,
 /// section 4).
@@ -55,7 +55,8 @@ impl Whitted {
         }
         let state = q.paths.state(number);
         let ray = hits.rays.get(&hits.common, i);
-        let (d, n) = (ray.direction, hits.normal(i));
+        let (d, n) = (ray.direction, hits.shown(i));
+        let face = hits.normal(i);
         let cosine = (-n.dot(d)).clamp(0.0, 1.0);
         let body = sample.job.material(state.medium.unwrap_or(hits.first[i]));
         let weight = state.weight.times(left(sample, q, i));
@@ -66,7 +67,11 @@ impl Whitted {
         let mut onward = |direction, side: f32, state: PathState| {
             let bright = state.weight.max_component() >= FAINTEST;
             if bright {
-                let origin = hits.point(i) + n * (hits.offset[i] * side);
+                let origin = hits.point(i) + face * (hits.offset[i] * side);
+                let direction = match sample.job.picture.has_bumps {
+                    true => kept_on(direction, face * side),
+                    false => direction,
+                };
                 let ray = WideRay {
                     origin,
                     direction,

@@ -81,7 +81,11 @@ pub fn pick(film: &Film, camera: &Camera, scene: &Scene, at: [f32; 2]) -> Option
 
 /// A material in a few words.
 fn described(material: &Material) -> String {
-    let pattern = match &material.pattern {
+    let mut pattern = &material.pattern;
+    while let Pattern::Placed { pattern: inner, .. } = pattern {
+        pattern = inner;
+    }
+    let pattern = match pattern {
         Pattern::Solid { .. } => "one colour",
         Pattern::Checker { .. } => "checker",
         Pattern::Stripes { .. } => "stripes",
@@ -89,6 +93,7 @@ fn described(material: &Material) -> String {
         Pattern::Gradient { .. } => "gradient",
         Pattern::Triplanar { .. } => "image",
         Pattern::Orbit { .. } => "orbit traps",
+        Pattern::Placed { .. } => "a pattern",
     };
     let mut words = vec![pattern.to_owned()];
     if material.metallic > 0.0 {

@@ -26,7 +26,7 @@ use zeroset_field::repetition::{Polar, Repetition};
 use zeroset_field::sampled::Source as SampledSource;
 use zeroset_scene::colour;
 use zeroset_scene::light::{Light, Sky};
-use zeroset_scene::material::{Material, Pattern};
+use zeroset_scene::material::Material;
 use zeroset_scene::scene::Object;
 use zeroset_scene::settings::{Occlusion, Settings};
 use zeroset_volume::bake::Bake;
@@ -319,9 +319,12 @@ impl Reader {
     fn material(&self, value: &Value, draft: &mut Draft) -> Read<Material> {
         let mut material: Material = data(value)?;
         valid::material(&material)?;
-        if let Pattern::Triplanar { image, .. } = &mut material.pattern {
-            let loaded = images::load(&mut draft.files, &image.path, &self.limits);
-            *image = loaded.map_err(|m| problem(m).at("path").at("image").at("pattern"))?;
+        for (name, pattern) in material.patterns_mut() {
+            pattern.images_mut(&mut |image| -> Read<()> {
+                let loaded = images::load(&mut draft.files, &image.path, &self.limits);
+                *image = loaded.map_err(|m| problem(m).at("path").at("image").at(name))?;
+                Ok(())
+            })?;
         }
         Ok(material)
     }

@@ -3,6 +3,7 @@
 use super::depth::CALL;
 use super::fields;
 use super::machine::{Body, Machine, ParamKind};
+use super::materials;
 use super::methods;
 use super::mistake::{Run, mistake};
 use super::native::{Argument, Call, Native};
@@ -248,6 +249,9 @@ impl<'a> Machine<'a> {
             Value::Text(_) => methods::TEXT,
             Value::List(_) => methods::LIST,
             Value::Dict(_) => methods::DICT,
+            Value::Thing(i) if matches!(self.store.thing(i), Thing::Pattern(_)) => {
+                materials::METHODS
+            }
             Value::Thing(i) if matches!(self.store.thing(i), Thing::Field(_)) => {
                 return fields::method(name).ok_or_else(|| {
                     let functions = fields::function_of_this_name(name);

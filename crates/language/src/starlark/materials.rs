@@ -2,13 +2,14 @@
 
 use super::mistake::{Run, mistake};
 use super::native::{Call, Given, Native, Slot, slot, spoken};
+use super::place::{coordinates, each_axis, turned};
 use super::value::{Thing, Value};
 use crate::draft::unit;
 use crate::images;
 use glam::{DVec3, Vec3};
 use zeroset_catalogue::{LARGE, SMALL};
 use zeroset_scene::colour;
-use zeroset_scene::material::{Material, Pattern};
+use zeroset_scene::material::{Bump, Ink, Material, Pattern};
 
 macro_rules! function {
     ($group:literal, $name:literal, $doc:literal, [$($slot:expr),*], $run:expr) => {
@@ -16,8 +17,12 @@ macro_rules! function {
     };
 }
 
-const A: Slot = slot("a", "\"#e8e8e8\"", "The one colour.");
-const B: Slot = slot("b", "\"#404040\"", "The other colour.");
+const A: Slot = slot(
+    "a",
+    "\"#e8e8e8\"",
+    "The one colour, a pattern in its place, or a number for what is no colour.",
+);
+const B: Slot = slot("b", "\"#404040\"", "The other one.");
 const SIZE: Slot = slot("size", "1", "Size, scene units.");
 
 /// The functions.
@@ -32,11 +37,15 @@ pub(crate) const ALL: &[Native] = &[
                 "\"#cbc8c4\"",
                 "A colour or a pattern; white where it transmits."
             ),
-            slot("metallic", "0", "0 plastic or stone, 1 metal."),
+            slot(
+                "metallic",
+                "0",
+                "0 plastic or stone, 1 metal; or a pattern of numbers."
+            ),
             slot(
                 "roughness",
                 "0.5",
-                "0 mirror, 1 chalk; from `shininess` where that alone is given."
+                "0 mirror, 1 chalk, or a pattern of numbers; from `shininess` where that alone is given."
             ),
             slot(
                 "specular",
@@ -65,7 +74,17 @@ pub(crate) const ALL: &[Native] = &[
                 "\"white\"",
                 "Colour that white light has after the way `tint_depth` inside."
             ),
-            slot("tint_depth", "1", "See `tint`; scene units.")
+            slot("tint_depth", "1", "See `tint`; scene units."),
+            slot(
+                "bump",
+                "None",
+                "A pattern of heights, 0 to 1, that the surface is shown with as if it had them."
+            ),
+            slot(
+                "bump_depth",
+                "0.02",
+                "How high 1 is, scene units; below 0 for dents."
+            )
         ],
         material
     ),
@@ -232,10 +251,10 @@ pub(crate) const ALL: &[Native] = &[
         ],
         |c| {
             let colours = [
-                c.colour_or("center", "#f2e8cf")?,
-                c.colour_or("x", "#bc4749")?,
-                c.colour_or("y", "#6a994e")?,
-                c.colour_or("z", "#386fa4")?,
+                c.ink_or("center", "#f2e8cf")?,
+                c.ink_or("x", "#bc4749")?,
+                c.ink_or("y", "#6a994e")?,
+                c.ink_or("z", "#386fa4")?,
             ];
             pattern(c, Pattern::Orbit { colours })
         }
@@ -279,6 +298,44 @@ impl Call<'_, '_> {
         Ok(numbers)
     }
 
+    /// What a pattern shows: a colour, a number as a grey of this luminance, or another pattern. Or a default.
+    fn ink_or(&self, param: &str, default: &str) -> Run<Ink> {
+        let Some(given) = self.get(param) else {
+            return Ok(self.colour_or(param, default)?.into());
+        };
+        match given.value {
+            Value::Int(_) | Value::Float(_) => {
+                let grey = self.ranged(param, given, 0.0, 1.0)? as f32;
+                Ok(Vec3::splat(grey).into())
+            }
+            Value::Thing(i) => match self.machine.store.thing(i) {
+                Thing::Pattern(pattern) => Ok(pattern.clone().into()),
+                _ => Err(self.unfit(param, "a colour, a number or a pattern", given)),
+            },
+            _ => Ok(self.colour(param, given)?.into()),
+        }
+    }
+
+    /// A number, or a pattern of numbers.
+    fn number_or_map(&self, param: &str, default: f32) -> Run<(Option<f32>, Option<Pattern>)> {
+        if let Some(pattern) = self.pattern(param)? {
+            return Ok((None, Some(pattern)));
+        }
+        let number = self.number_or(param, f64::from(default), 0.0, 1.0)? as f32;
+        Ok((self.get(param).is_some().then_some(number), None))
+    }
+
+    /// A pattern, if that is what was given.
+    fn pattern(&self, param: &str) -> Run<Option<Pattern>> {
+        let Some(Value::Thing(i)) = self.get(param).map(|given| given.value) else {
+            return Ok(None);
+        };
+        match self.machine.store.thing(i) {
+            Thing::Pattern(pattern) => Ok(Some(pattern.clone())),
+            _ => Ok(None),
+        }
+    }
+
     /// A colour, linear, or a default.
     pub(crate) fn colour_or(&self, param: &str, default: &str) -> Run<Vec3> {
         match self.get(param) {
@@ -312,19 +369,29 @@ fn material(c: &mut Call<'_, '_>) -> Run<Value> {
         let number = c.number_or(name, f64::from(default), least, most)? as f32;
         Ok(c.get(name).is_some().then_some(number))
     };
-    let roughness = number("roughness", default.roughness, 0.0, 1.0)?;
+    let (roughness, roughness_map) = c.number_or_map("roughness", default.roughness)?;
+    let (metallic, metallic_map) = c.number_or_map("metallic", default.metallic)?;
+    let depth = c.number_or("bump_depth", 0.02, -LARGE, LARGE)? as f32;
+    let bump = match (c.get("bump"), c.pattern("bump")?) {
+        (_, Some(pattern)) => Some(Bump { pattern, depth }),
+        (Some(given), None) => return Err(c.unfit("bump", "a pattern such as noise(0, 1)", given)),
+        (None, None) => None,
+    };
     let shininess = number("shininess", default.shininess, 1.0, 1e4)?;
     let depth = c.number_or("tint_depth", 1.0, SMALL, LARGE)? as f32;
     let material = Material {
         pattern,
         specular: c.number_or("specular", f64::from(default.specular), 0.0, 10.0)? as f32,
         shininess: (shininess.or(roughness.map(shininess_of))).unwrap_or(default.shininess),
-        metallic: c.number_or("metallic", f64::from(default.metallic), 0.0, 1.0)? as f32,
+        metallic: metallic.unwrap_or(default.metallic),
         roughness: (roughness.or(shininess.map(roughness_of))).unwrap_or(default.roughness),
         transmission: transmission as f32,
         ior: c.number_or("ior", f64::from(default.ior), 1.0, 4.0)? as f32,
         attenuation: attenuation(c.colour_or("tint", "white")?, depth),
         emission: c.colour_or("emission", "black")? * strength,
+        roughness_map,
+        metallic_map,
+        bump,
     };
     c.machine.thing(Thing::Material(material.into()))
 }
@@ -346,11 +413,103 @@ fn attenuation(tint: Vec3, depth: f32) -> Vec3 {
 }
 
 fn pattern(c: &mut Call<'_, '_>, pattern: Pattern) -> Run<Value> {
+    let parts = pattern.parts().take(Pattern::MOST + 1).count();
+    if parts > Pattern::MOST {
+        let most = Pattern::MOST;
+        return Err(mistake(format!(
+            "patterns within this pattern are too many, at most {most} are allowed, itself among them"
+        )));
+    }
     c.machine.thing(Thing::Pattern(pattern))
 }
 
-fn pair(c: &Call<'_, '_>) -> Run<[Vec3; 2]> {
-    Ok([c.colour_or("a", "#e8e8e8")?, c.colour_or("b", "#404040")?])
+/// The methods of patterns.
+pub(crate) const METHODS: &[Native] = &[
+    function!(
+        "Patterns",
+        "move",
+        "Moves the pattern over what it is painted on.",
+        [
+            slot("x", "0", "How far along x; or all three as (x, y, z)."),
+            slot("y", "0", "How far along y."),
+            slot("z", "0", "How far along z.")
+        ],
+        |c| {
+            let offset = coordinates(c, LARGE)?;
+            let back = offset.map(|x| -x);
+            placed(c, identity(), back)
+        }
+    ),
+    function!(
+        "Patterns",
+        "turn",
+        "Turns the pattern about the origin, as `turn` of a shape.",
+        [
+            slot("x", "0", "Degrees about x; or all three as (x, y, z)."),
+            slot("y", "0", "Degrees about y."),
+            slot("z", "0", "Degrees about z."),
+            slot(
+                "axis",
+                "None",
+                "An axis such as \"y\" or (1, 1, 0), instead of x, y, z."
+            ),
+            slot(
+                "angle",
+                "None",
+                "Degrees about the axis, counter-clockwise when it points at you."
+            ),
+            slot("quaternion", "None", "(x, y, z, w), instead of all others.")
+        ],
+        |c| {
+            let r = turned(c)?.rotation;
+            let back = [0, 1, 2].map(|i| [r[0][i], r[1][i], r[2][i]]);
+            placed(c, back, [0.0; 3])
+        }
+    ),
+    function!(
+        "Patterns",
+        "scale",
+        "Scales the pattern about the origin.",
+        [slot(
+            "factor",
+            "",
+            "How many times larger, above 0; or (x, y, z), as for the grain of wood."
+        )],
+        |c| {
+            let given = c.need("factor")?;
+            let factor = each_axis(c, "factor", given, SMALL, LARGE)?;
+            let mut rows = identity();
+            for (k, row) in rows.iter_mut().enumerate() {
+                row[k] = 1.0 / factor[k];
+            }
+            placed(c, rows, [0.0; 3])
+        }
+    ),
+];
+
+fn identity() -> [[f64; 3]; 3] {
+    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+}
+
+/// The pattern whose method is called, in another place: `rows` and `offset` lead from there to where it was.
+fn placed(c: &mut Call<'_, '_>, rows: [[f64; 3]; 3], offset: [f64; 3]) -> Run<Value> {
+    let inner = match c.receiver {
+        Value::Thing(i) => match c.machine.store.thing(i) {
+            Thing::Pattern(inner) => inner.clone(),
+            _ => unreachable!("methods of patterns are looked up by patterns only"),
+        },
+        _ => unreachable!("methods of patterns are looked up by patterns only"),
+    };
+    let placed = Pattern::Placed {
+        pattern: Box::new(inner),
+        rows: rows.map(|row| DVec3::from(row).as_vec3()),
+        offset: DVec3::from(offset).as_vec3(),
+    };
+    pattern(c, placed)
+}
+
+fn pair(c: &Call<'_, '_>) -> Run<[Ink; 2]> {
+    Ok([c.ink_or("a", "#e8e8e8")?, c.ink_or("b", "#404040")?])
 }
 
 fn size(c: &Call<'_, '_>) -> Run<f32> {

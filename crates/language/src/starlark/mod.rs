@@ -167,5 +167,6 @@ pub fn words() -> Vec<Word> {
     natives()
         .map(|n| word(n, false))
         .chain(place::METHODS.iter().map(|n| word(n, true)))
+        .chain(materials::METHODS.iter().map(|n| word(n, true)))
         .collect()
 }

@@ -141,7 +141,7 @@ fn place(c: &mut Call<'_, '_>, placement: Placement) -> Run<Value> {
 }
 
 /// `x`, `y` and `z`, or all three in `x`.
-fn coordinates(c: &Call<'_, '_>, limit: f64) -> Run<[f64; 3]> {
+pub(super) fn coordinates(c: &Call<'_, '_>, limit: f64) -> Run<[f64; 3]> {
     if let Some(given) = c.get("x")
         && matches!(given.value, Value::List(_) | Value::Tuple(_))
     {
@@ -171,9 +171,15 @@ fn coordinates(c: &Call<'_, '_>, limit: f64) -> Run<[f64; 3]> {
 }
 
 fn turn(c: &mut Call<'_, '_>) -> Run<Value> {
+    let placement = turned(c)?;
+    place(c, placement)
+}
+
+/// What the arguments of a turn say.
+pub(super) fn turned(c: &Call<'_, '_>) -> Run<Placement> {
     let (axis, angle, quaternion) = (c.get("axis"), c.get("angle"), c.get("quaternion"));
     let euler = c.get("x").or_else(|| c.get("y")).or_else(|| c.get("z"));
-    let placement = match (quaternion, axis, angle) {
+    Ok(match (quaternion, axis, angle) {
         (Some(q), None, None) if euler.is_none() => {
             let numbers: [f64; 4] = c.numbers("quaternion", q)?;
             if numbers.iter().all(|x| *x == 0.0) {
@@ -192,8 +198,7 @@ fn turn(c: &mut Call<'_, '_>) -> Run<Value> {
             let help = "write turn(y = 30), turn(axis = (1, 1, 0), angle = 30) or turn(quaternion = (0, 0, 0, 1))";
             return Err(mistake("these do not say one turn").help(help));
         }
-    };
-    place(c, placement)
+    })
 }
 
 fn repeat(c: &mut Call<'_, '_>) -> Run<Value> {
@@ -236,7 +241,13 @@ fn repeat(c: &mut Call<'_, '_>) -> Run<Value> {
 }
 
 /// A number for all axes, or one for each.
-fn each_axis(c: &Call<'_, '_>, param: &str, given: Given, min: f64, max: f64) -> Run<[f64; 3]> {
+pub(super) fn each_axis(
+    c: &Call<'_, '_>,
+    param: &str,
+    given: Given,
+    min: f64,
+    max: f64,
+) -> Run<[f64; 3]> {
     if matches!(given.value, Value::Int(_) | Value::Float(_)) {
         return Ok([c.ranged(param, given, min, max)?; 3]);
     }

@@ -6,7 +6,8 @@
 //! object and the material, plus one.
 
 use super::{
-    FieldSource, Functions, MARKS, Operand, Registers, has_traps, memory, name, plain_marks, steps,
+    FieldSource, Functions, MARKS, Operand, Registers, has_traps, memory, name, places,
+    plain_marks, steps,
 };
 use crate::field::recorded::Form;
 use std::collections::BTreeMap;
@@ -56,7 +57,7 @@ pub(super) fn source(structure: &Structure, place: Registers) -> FieldSource {
         Registers::Memory => memory::text,
     };
     FieldSource {
-        text: text(&operations, registers, plain.is_none()),
+        text: text(structure, &operations, registers, plain.is_none()),
         code,
         registers: words(registers),
     }
@@ -126,7 +127,12 @@ impl Operations {
     }
 }
 
-fn text(operations: &Operations, [points, values]: [u32; 2], with_marks: bool) -> String {
+fn text(
+    structure: &Structure,
+    operations: &Operations,
+    [points, values]: [u32; 2],
+    with_marks: bool,
+) -> String {
     let mut functions = Functions::default();
     let value_step = step(operations, &mut functions, Form::Value);
     let gradient_step = step(operations, &mut functions, Form::Gradient);
@@ -138,6 +144,7 @@ fn text(operations: &Operations, [points, values]: [u32; 2], with_marks: bool) -
     } else {
         PLAIN_MARKS.into()
     };
+    let places = places::text(structure, &mut functions);
     let functions = functions.print();
     // not local to the functions: those would be cleared in each call
     let registers = format!(
@@ -150,7 +157,7 @@ var<private> field_duals: array<vec4f, {values}>;
     let value = run("field", "f32", "field_values");
     let gradient = run("field_gradient", "vec4f", "field_duals");
     format!(
-        "{MARKS}\n{functions}\n{FETCH}\n{registers}\n{value_step}\n{value}\n{gradient_step}\n{gradient}\n{marks}"
+        "{MARKS}\n{functions}\n{FETCH}\n{registers}\n{value_step}\n{value}\n{gradient_step}\n{gradient}\n{marks}\n{places}"
     )
 }
 

@@ -5,10 +5,11 @@
 //! and writes its result in one place; and a turn of the loop carries out several.
 
 use super::interpreted::{FETCH, HEAD, Operations, PLAIN_MARKS, WORDS};
-use super::{Functions, MARKS, has_traps};
+use super::{Functions, MARKS, has_traps, places};
 use crate::field::recorded::Form;
 use std::fmt::Write;
 use zeroset_catalogue::tape::Operation;
+use zeroset_field::program::Structure;
 
 /// Instructions a turn of the loop.
 pub(super) const UNROLLED: u32 = 4;
@@ -16,6 +17,7 @@ pub(super) const UNROLLED: u32 = 4;
 pub(super) const NOTHING: u32 = 0xffff;
 
 pub(super) fn text(
+    structure: &Structure,
     operations: &Operations,
     [points, values]: [u32; 2],
     with_marks: bool,
@@ -40,6 +42,7 @@ fn field_marks(p: vec3f) -> Marks {{
     } else {
         PLAIN_MARKS.into()
     };
+    let places = places::text(structure, &mut functions);
     let functions = functions.print();
     let value = run(
         "fn field(p: vec3f) -> f32",
@@ -54,7 +57,7 @@ fn field_marks(p: vec3f) -> Marks {{
         "field_dual",
     );
     format!(
-        "const FIELD_POINTS: u32 = {points}u;\nconst FIELD_VALUES: u32 = {values}u;\n{MARKS}\n{functions}\n{FETCH}\n{}\n{value_step}\n{value}\n{gradient_step}\n{gradient}\n{marks}",
+        "const FIELD_POINTS: u32 = {points}u;\nconst FIELD_VALUES: u32 = {values}u;\n{MARKS}\n{functions}\n{FETCH}\n{}\n{value_step}\n{value}\n{gradient_step}\n{gradient}\n{marks}\n{places}",
         accesses(with_marks)
     )
 }

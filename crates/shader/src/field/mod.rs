@@ -6,12 +6,13 @@
 use recorded::Form;
 use std::collections::BTreeMap;
 use zeroset_catalogue::tape::{Code, Operation};
-use zeroset_field::program::Structure;
+use zeroset_field::program::{Coat, Structure};
 use zeroset_number::wgsl;
 
 mod compiled;
 mod interpreted;
 mod memory;
+mod places;
 pub mod recorded;
 
 /// The field's part of a shader module, in WGSL.
@@ -21,6 +22,10 @@ pub mod recorded;
 /// fn field(p: vec3f) -> f32
 /// fn field_gradient(p: vec3f) -> vec4f // the value, then the gradient
 /// fn field_marks(p: vec3f) -> Marks
+/// ```
+/// and, where the program has [coats](Structure::coats), where a point lies in their spaces, with the derivatives of each coordinate:
+/// ```wgsl
+/// fn field_place(number: u32, p: vec3f) -> mat3x4f // number: see `place_number`
 /// ```
 /// and reads `params`, an `array<f32>`, and `code`, an `array<u32>`, which the module declares. Other names that it declares
 /// begin with `field_`, with the name of a [`Form`] or with a kind of [`Operation`], or are those of `stage/marks.wgsl`.
@@ -65,6 +70,19 @@ enum Registers {
     Private,
     /// In a buffer.
     Memory,
+}
+
+/// The number by which shaders know the space whose point is left in a register by [`Structure::places`]: 0 is the world.
+pub(crate) fn place_number(coats: &[Coat], place: u16) -> u32 {
+    let mut before: Vec<u16> = coats.iter().map(|coat| coat.place).collect();
+    before.retain(|other| *other < place && *other > 0);
+    before.sort_unstable();
+    before.dedup();
+    if place == 0 {
+        0
+    } else {
+        before.len() as u32 + 1
+    }
 }
 
 const MARKS: &str = include_str!("../stage/marks.wgsl");

@@ -1,6 +1,6 @@
 // An image projected along the three axes, blended by the normal.
 
-fn texel(m: Material, x: f32, y: f32) -> vec3f {
+fn texel(m: TexturePart, x: f32, y: f32) -> vec3f {
     let column = x - m.width * floor(x / m.width);
     let row = y - m.height * floor(y / m.height);
     let pixel = u32(min(row, m.height - 1.0)) * u32(m.width) + u32(min(column, m.width - 1.0));
@@ -8,7 +8,7 @@ fn texel(m: Material, x: f32, y: f32) -> vec3f {
 }
 
 /// The colour of an endlessly repeated image, between its four nearest pixels.
-fn image_colour(m: Material, at: vec2f) -> vec3f {
+fn image_colour(m: TexturePart, at: vec2f) -> vec3f {
     if (m.width < 1.0 || m.height < 1.0) {
         return vec3f(0.0);
     }
@@ -20,7 +20,7 @@ fn image_colour(m: Material, at: vec2f) -> vec3f {
     return mix(upper, lower, s.y);
 }
 
-fn pattern_triplanar(m: Material, at: Place) -> vec3f {
+fn pattern_triplanar(m: TexturePart, at: Place) -> vec3f {
     let weights = projection_weights(at.normal, m.detail);
     var sum = vec3f(0.0);
     var total = 0.0;

@@ -7,6 +7,8 @@ struct LocalMaterial {
     /// Specular, metallic, roughness, transmission.
     finish: vec4f,
     shininess: f32,
+    /// The normal that light meets: with the heights of bumps.
+    normal: vec3f,
 }
 
 /// Light that a hit gets.
@@ -45,7 +47,7 @@ fn arriving(path: Onward, at: Surface, what: LocalMaterial) -> Arrival {
             lit *= shining(path);
         }
         // by the cosine law, in the highlight, the part of that at grazing angles, and what distance leaves
-        let answer = light_response(to.xyz, to.w, light.kind, at.normal, at.direction, light_finish(what));
+        let answer = light_response(to.xyz, to.w, light.kind, what.normal, at.direction, light_finish(what));
         let power = answer.w * lit;
         sum.diffuse += light.radiance * (answer.x * power);
         sum.gloss += light.radiance * (answer.y * power * shone);
@@ -60,7 +62,7 @@ fn arriving(path: Onward, at: Surface, what: LocalMaterial) -> Arrival {
 fn colour_of(what: LocalMaterial, light: Arrival, at: Surface, seen: AmbientVisibility, followed: f32) -> vec3f {
     return surface_colour(
         what.albedo, what.emission, what.finish,
-        light.diffuse, light.gloss, light.grazing, seen.open, seen.bent, at.normal, at.direction,
+        light.diffuse, light.gloss, light.grazing, seen.open, seen.bent, what.normal, at.direction,
         frame.sky_horizon, frame.sky_top, frame.sky_bottom, ambient_share(), followed,
     );
 }

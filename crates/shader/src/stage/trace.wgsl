@@ -12,12 +12,6 @@ fn body_of(path: Onward, met: f32) -> Material {
     return material_numbered(select(met, path.medium, path.medium >= 0.0));
 }
 
-fn local_material(number: f32, at: Place) -> LocalMaterial {
-    let m = material_numbered(number);
-    let finish = vec4f(m.specular, m.metallic, m.roughness, m.transmission);
-    return LocalMaterial(pattern_colour(m, at), m.emission, finish, m.shininess);
-}
-
 /// Two materials mixed.
 fn blend(a: LocalMaterial, b: LocalMaterial, share: f32) -> LocalMaterial {
     return LocalMaterial(
@@ -25,6 +19,7 @@ fn blend(a: LocalMaterial, b: LocalMaterial, share: f32) -> LocalMaterial {
         mix(a.emission, b.emission, share),
         mix(a.finish, b.finish, share),
         mix(a.shininess, b.shininess, share),
+        mix(a.normal, b.normal, share),
     );
 }
 
@@ -175,9 +170,19 @@ fn follow(path: Onward, next: ptr<function, array<Onward, 2>>) -> Sample {
     }
     let width = pixel_here / sqrt(f32(max(frame.samples, 1u)));
     let place = place_on(point, normal, ray.direction, width, marks.orbit);
-    var what = local_material(marks.first, place);
-    if (marks.share > 0.0) {
-        what = blend(what, local_material(marks.second, place), marks.share);
+    // in a loop, so that textures are in one place only
+    var what: LocalMaterial;
+    for (var k = 0u; k < 2u; k++) {
+        if (k == 1u && !(marks.share > 0.0)) {
+            break;
+        }
+        let one = local_material(select(marks.second, marks.first, k == 0u), place, ray.direction);
+        if (k == 0u) {
+            what = one;
+        } else {
+            what = blend(what, one, marks.share);
+            what.normal = normalize(what.normal);
+        }
     }
     let light = arriving(path, at, what);
     let followed = go_on(path, at, t, what, marks.first, next);

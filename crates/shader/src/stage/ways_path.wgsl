@@ -85,9 +85,9 @@ fn go_on(path: Onward, at: Surface, t: f32, what: LocalMaterial, material: f32, 
     let u = decided(path, 1u);
     let ior = select(body.ior, 1.0 / body.ior, inside);
     let choice = vec3f(first.x, u.x, u.y);
-    let way = scatter_way(what.albedo, what.finish, at.normal, at.direction, ior, choice);
+    let way = scatter_way(what.albedo, what.finish, what.normal, at.direction, ior, choice);
     let tint = select(what.albedo, vec3f(1.0), inside);
-    var weight = path.weight * scatter_weight(what.albedo, what.finish, at.normal, at.direction, ior, tint, choice);
+    var weight = path.weight * scatter_weight(what.albedo, what.finish, what.normal, at.direction, ior, tint, choice);
     var medium = -1.0;
     weight *= 1.0 - select(haze(path.ray, t), 0.0, inside);
     if (inside) {
@@ -112,6 +112,10 @@ fn go_on(path: Onward, at: Surface, t: f32, what: LocalMaterial, material: f32, 
         medium = select(material, -1.0, inside);
     }
     let side = select(1.0, -1.0, through);
+    // what bumps send behind the surface that they are on is lost
+    if (dot(what.normal, at.normal) < 1.0 && dot(way.xyz, at.normal) * side <= 0.0) {
+        return 1.0;
+    }
     let ray = Ray(at.point + at.normal * (at.offset * side), way.xyz, path.ray.narrow, t + path.ray.travelled);
     var flags = path.flags & SCATTERED;
     flags |= select(0u, SCATTERED, lobe < 0.5) | select(0u, SEES_LIGHTS, lobe > 1.5);

@@ -10,7 +10,7 @@ fn go_on(path: Onward, at: Surface, t: f32, what: LocalMaterial, material: f32, 
         return 0.0;
     }
     let d = at.direction;
-    let n = at.normal;
+    let n = what.normal;
     let cosine = clamp(-dot(n, d), 0.0, 1.0);
     let travelled = t + path.ray.travelled;
     let body = body_of(path, material);
@@ -32,13 +32,13 @@ fn go_on(path: Onward, at: Surface, t: f32, what: LocalMaterial, material: f32, 
         let colour = select(what.albedo, vec3f(1.0), inside);
         let passed = weight * colour * through;
         if (path.bounces.y < frame.refractions && is_bright(passed)) {
-            let ray = Ray(at.point - n * at.offset, met.xyz, path.ray.narrow, travelled);
+            let ray = Ray(at.point - at.normal * at.offset, kept_on(met.xyz, -at.normal), path.ray.narrow, travelled);
             (*next)[0] = Onward(ray, passed, path.bounces + vec2u(0u, 1u), select(material, -1.0, inside), 0u, path.pixel, path.index, 0.0, -1.0, FAR);
         }
     }
     let mirrored = weight * reflected;
     if (bounces.x <= frame.reflections && bounces.y <= frame.refractions && is_bright(mirrored)) {
-        let ray = Ray(at.point + n * at.offset, d + n * (2.0 * cosine), path.ray.narrow, travelled);
+        let ray = Ray(at.point + at.normal * at.offset, kept_on(d + n * (2.0 * cosine), at.normal), path.ray.narrow, travelled);
         (*next)[1] = Onward(ray, mirrored, bounces, medium, 0u, path.pixel, path.index, 0.0, -1.0, FAR);
         return smooth_share + (1.0 - smooth_share) * clear;
     }

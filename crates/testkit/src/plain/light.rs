@@ -13,6 +13,8 @@ use zeroset_shade::view::ROUNDING;
 pub(super) struct Surface {
     pub(super) p: Vec3,
     pub(super) normal: Vec3,
+    /// The normal that light meets: with the heights of bumps.
+    pub(super) shown: Vec3,
     /// 1, or -1 where it is seen from inside the solid.
     pub(super) side: f32,
     /// How far secondary rays start from it.
@@ -48,7 +50,7 @@ impl Plain<'_> {
                 }
             };
             let (to, distance) = Self::towards(&light.source, at.p);
-            let (n, d) = (field(at.normal), field(at.d));
+            let (n, d) = (field(at.shown), field(at.d));
             let got = arrival(
                 self.settings.shading,
                 light,

@@ -10,6 +10,7 @@ pub mod dense;
 mod light;
 mod march;
 mod probe;
+mod texture;
 
 pub use probe::{Compiled, Formula, Mark, Probe};
 
@@ -25,7 +26,7 @@ use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Filter, Integrator, Settings, Shading};
 use zeroset_shade::air::{self, Air};
 use zeroset_shade::march::MARKS_BEHIND;
-use zeroset_shade::pattern::{Place, colour as pattern_colour};
+use zeroset_shade::pattern::Place;
 use zeroset_shade::sampling::{hit_seed, point, radius, scramble, weight};
 use zeroset_shade::skin::has_skins;
 use zeroset_shade::sky::SkyColours;
@@ -262,9 +263,10 @@ impl Plain<'_> {
         let travelled = t + ray.travelled;
         let mark = probe.marks(p - normal * (MARKS_BEHIND * self.view.rounding.at(travelled)));
         probe.enter(false);
-        let surface = Surface {
+        let mut surface = Surface {
             p,
             normal,
+            shown: normal,
             side,
             offset,
             d,
@@ -278,7 +280,10 @@ impl Plain<'_> {
         let pixel = self.view.width(travelled, ray.narrow) / (self.samples() as f32).sqrt();
         let mut what = {
             let place = Place::new(field(p), field(normal), field(d), pixel);
-            self.local_material(&mark, &place.with_orbit(mark.orbit))
+            let place = place.with_orbit(mark.orbit);
+            let (what, shown) = self.local_material(probe, &mark, &place, d);
+            surface.shown = shown;
+            what
         };
         let bounces = match (self.settings.shading, self.settings.integrator) {
             (
@@ -309,12 +314,12 @@ impl Plain<'_> {
             grazing: field(light.grazing * shone),
             open,
             bent: field(bent),
-            normal: field(normal),
+            normal: field(surface.shown),
             direction: field(d),
         };
         let sky_colours = SkyColours::of(self.scene.sky());
         let bent_rays =
-            bounces.map(|limits| self.onward(ray, &surface, t, &what, &mark, way, limits));
+            bounces.map(|limits| self.onward(probe, ray, &surface, t, &what, &mark, way, limits));
         let (onward, followed) = bent_rays.unwrap_or_default();
         let mut c = glam(colour(
             self.settings.shading,
@@ -331,7 +336,7 @@ impl Plain<'_> {
             // the rays that go on are part of what fog is before
             c = self.haze(ray, t, c);
         } else if way.medium.is_some() || what.transmission > 0.0 {
-            let body = self.material(way.medium.unwrap_or(mark.first));
+            let body = self.material(probe, way.medium.unwrap_or(mark.first));
             c *= (-body.attenuation * t).exp();
         }
         let hit = Hit {
@@ -376,6 +381,7 @@ impl Plain<'_> {
     #[allow(clippy::too_many_arguments, reason = "all that is known of a hit")]
     fn onward(
         &self,
+        probe: &mut impl Probe,
         ray: &Ray,
         at: &Surface,
         t: f32,
@@ -385,7 +391,7 @@ impl Plain<'_> {
         limits: [u32; 2],
     ) -> (Vec<Onward>, f32) {
         let inside = at.side < 0.0;
-        let (d, n) = (at.d, at.normal);
+        let (d, n) = (at.d, at.shown);
         let clear = what.transmission * (1.0 - what.metallic);
         let smooth = followed_share(what.roughness);
         let mut onward = Vec::new();
@@ -393,7 +399,7 @@ impl Plain<'_> {
             return (onward, 0.0);
         }
         let medium = way.medium.unwrap_or(mark.first);
-        let body = self.material(medium);
+        let body = self.material(probe, medium);
         let lost = if inside {
             (-body.attenuation * t).exp()
         } else {
@@ -406,8 +412,8 @@ impl Plain<'_> {
             let bright = weight.max_element() >= FAINTEST;
             if bright {
                 let ray = Ray {
-                    o: at.p + n * (side * at.offset),
-                    d: direction,
+                    o: at.p + at.normal * (side * at.offset),
+                    d: texture::on_side(direction, at.normal * side),
                     narrow: ray.narrow,
                     travelled: ray.travelled + t,
                 };
@@ -465,31 +471,53 @@ impl Plain<'_> {
         }
     }
 
-    fn material(&self, number: f32) -> &Material {
-        let at = if number >= 0.0 {
-            number as usize
-        } else {
-            usize::MAX
+    fn material(&self, probe: &mut impl Probe, number: f32) -> &Material {
+        let materials = self.scene.materials();
+        let at = match probe.placed(number, materials.len(), Vec3::ZERO) {
+            Some((material, ..)) => material,
+            None if number >= 0.0 => number as usize,
+            None => usize::MAX,
         };
-        self.scene.materials().get(at).unwrap_or(&self.fallback)
+        materials.get(at).unwrap_or(&self.fallback)
     }
 
-    fn local_material(&self, mark: &Mark, at: &Place<f32>) -> LocalMaterial<f32> {
-        let of = |m: &Material, weight: f32| LocalMaterial {
-            albedo: pattern_colour(&m.pattern, at) * weight,
-            emission: field(m.emission * weight),
-            specular: m.specular * weight,
-            metallic: m.metallic * weight,
-            roughness: m.roughness * weight,
-            transmission: m.transmission * weight,
-            shininess: m.shininess * weight,
+    /// What the surface is made of, and its normal with the heights of bumps.
+    fn local_material(
+        &self,
+        probe: &mut impl Probe,
+        mark: &Mark,
+        at: &Place<f32>,
+        d: Vec3,
+    ) -> (LocalMaterial<f32>, Vec3) {
+        let mut of = |number: f32, weight: f32| {
+            let placed = probe.placed(number, self.scene.materials().len(), glam(at.point));
+            let rows = placed.map_or([Vec3::X, Vec3::Y, Vec3::Z], |(_, _, rows)| rows);
+            let here = placed.map_or(*at, |(_, point, _)| texture::seen_from(at, point, rows));
+            let m = self.material(probe, number);
+            let number = |map: &Option<_>, own: f32| {
+                map.as_ref().map_or(own, |map| texture::number(map, &here))
+            };
+            let what = LocalMaterial {
+                albedo: field(texture::shown(&m.pattern, &here) * weight),
+                emission: field(m.emission * weight),
+                specular: m.specular * weight,
+                metallic: number(&m.metallic_map, m.metallic) * weight,
+                roughness: number(&m.roughness_map, m.roughness) * weight,
+                transmission: m.transmission * weight,
+                shininess: m.shininess * weight,
+            };
+            let normal = match &m.bump {
+                Some(bump) => texture::bumped(bump, at, &here, rows, d),
+                None => glam(at.normal),
+            };
+            (what, normal * weight)
         };
-        let a = of(self.material(mark.first), 1.0 - mark.share);
+        let (a, normal) = of(mark.first, 1.0 - mark.share);
         if mark.share <= 0.0 {
-            return a;
+            return (a, normal);
         }
-        let b = of(self.material(mark.second), mark.share);
-        LocalMaterial {
+        let (b, other) = of(mark.second, mark.share);
+        let both = LocalMaterial {
             albedo: a.albedo + b.albedo,
             emission: a.emission + b.emission,
             specular: a.specular + b.specular,
@@ -497,7 +525,8 @@ impl Plain<'_> {
             roughness: a.roughness + b.roughness,
             transmission: a.transmission + b.transmission,
             shininess: a.shininess + b.shininess,
-        }
+        };
+        (both, (normal + other).normalize_or_zero())
     }
 
     /// Filters the samples, row by row, pixel by pixel.

@@ -29,6 +29,16 @@ pub trait Probe {
     fn gradient(&mut self, p: Vec3) -> Vec3;
     /// The marks.
     fn marks(&mut self, p: Vec3) -> Mark;
+    /// The material that a mark stands for of a scene with `materials` of them, the point in the space that it lies in, and of each of its
+    /// coordinates there the derivatives; nothing where that is the world.
+    fn placed(
+        &mut self,
+        _mark: f32,
+        _materials: usize,
+        _p: Vec3,
+    ) -> Option<(usize, Vec3, [Vec3; 3])> {
+        None
+    }
     /// From now on, whether values and gradients are those of the clear bodies alone, without the opaque ones in them. Where no scene
     /// with clear bodies is rendered there is nothing to do.
     fn enter(&mut self, _clear: bool) {}
@@ -72,6 +82,16 @@ impl Probe for Compiled<'_> {
 
     fn enter(&mut self, clear: bool) {
         self.is_inside = clear;
+    }
+
+    fn placed(&mut self, mark: f32, materials: usize, p: Vec3) -> Option<(usize, Vec3, [Vec3; 3])> {
+        let number = (mark >= 0.0).then_some(mark as usize)?;
+        let coat = self.program.coats().get(number.checked_sub(materials)?)?;
+        let mut places = Point::<Dual<f32>>::new(self.program.places());
+        let at = places.place(Dual::point(v3(p.x, p.y, p.z)), coat.place);
+        let point = Vec3::new(at.x.v, at.y.v, at.z.v);
+        let rows = [at.x.d, at.y.d, at.z.d].map(Vec3::from);
+        Some((usize::from(coat.material), point, rows))
     }
 
     fn gradient(&mut self, p: Vec3) -> Vec3 {

@@ -9,6 +9,7 @@
 #![allow(unreachable_pub, reason = "the modules of a test are its own")]
 
 mod camera;
+mod coat;
 mod faults;
 mod film;
 mod known;
@@ -30,8 +31,9 @@ use zeroset_testkit::plain::{self, Compiled, Quality};
 
 /// Every check.
 fn checks() -> Vec<Check> {
-    let groups: [&[Check]; 8] = [
+    let groups: [&[Check]; 9] = [
         &camera::CHECKS,
+        &coat::CHECKS,
         &film::CHECKS,
         &light::CHECKS,
         &pattern::CHECKS,

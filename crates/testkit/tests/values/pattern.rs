@@ -164,7 +164,7 @@ fn gradient(draw: Draw) -> Found {
 }
 
 /// The sum of octaves in double precision, each faded by the share of its feature that a pixel covers.
-fn clouds(p: DVec3, pixel: f64, size: f64, octaves: u32) -> f64 {
+pub fn clouds(p: DVec3, pixel: f64, size: f64, octaves: u32) -> f64 {
     // on a face that is seen straight on a pixel is a square
     let mut footprint = pixel * 2.0f64.sqrt() / size;
     let (mut p, mut share, mut sum, mut total) = (p / size, 1.0, 0.0, 0.0);

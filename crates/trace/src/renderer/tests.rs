@@ -2,7 +2,9 @@ use super::*;
 use crate::bench::sphere_box_ground;
 use crate::stop::INTERVAL;
 use std::sync::atomic::{AtomicU64, Ordering};
+use zeroset_catalogue::entries::catalogue;
 use zeroset_eval::BATCH;
+use zeroset_field::field::Field;
 use zeroset_scene::render::Silent;
 use zeroset_scene::settings::{Filter, March, Normals, Settings};
 

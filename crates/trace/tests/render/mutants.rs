@@ -41,6 +41,9 @@ impl Probe for Faulty<'_> {
     fn marks(&mut self, p: Vec3) -> Mark {
         self.right.marks(p)
     }
+    fn placed(&mut self, mark: f32, materials: usize, p: Vec3) -> Option<(usize, Vec3, [Vec3; 3])> {
+        self.right.placed(mark, materials, p)
+    }
 }
 
 fn faulty(scene: &Scene, value: f32, gradient: f32) -> Film {

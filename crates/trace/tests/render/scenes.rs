@@ -56,7 +56,7 @@ pub fn blend() -> Scene {
         materials: vec![
             Material {
                 pattern: Pattern::Checker {
-                    colours: [Vec3::splat(0.3), Vec3::splat(0.7)],
+                    colours: [Vec3::splat(0.3).into(), Vec3::splat(0.7).into()],
                     size: 0.5,
                 },
                 ..plain.clone()

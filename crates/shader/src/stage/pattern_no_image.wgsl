@@ -1,0 +1,4 @@
+
+fn pattern_triplanar(part: TexturePart, at: Place) -> vec3f {
+    return vec3f(0.0);
+}
