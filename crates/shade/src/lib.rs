@@ -23,12 +23,15 @@
 pub mod air;
 pub mod bsdf;
 pub mod coverage;
+pub mod environment;
+pub mod lamp;
 pub mod light;
 pub mod march;
 pub mod microfacet;
 pub mod normal;
 pub mod occlusion;
 pub mod pattern;
+mod preetham;
 pub mod sampling;
 pub mod secondary;
 pub mod shadow;

@@ -1,7 +1,7 @@
 //! A scene as numbers for a shader: what changes from picture to picture, in buffers.
 
 use crate::entry::{CONE_SIDES, MARGIN};
-use crate::layout::{self, Frame, Light, Material, Occluder};
+use crate::layout::{self, Around, Frame, Light, Material, Occluder};
 use crate::source::{Key, number, pattern_kind, reach};
 use crate::texture;
 use std::collections::{HashMap, HashSet};
@@ -22,6 +22,8 @@ use zeroset_scene::settings::{
 };
 use zeroset_shade::air::Air;
 use zeroset_shade::coverage::LAYERS;
+use zeroset_shade::environment::EnvironmentMap;
+use zeroset_shade::lamp::{Lamp, Shape};
 use zeroset_shade::light::luminance;
 use zeroset_shade::skin::has_skins;
 use zeroset_shade::view::{Region, View};
@@ -48,6 +50,8 @@ pub struct Shaders {
     form: FieldForm,
     limits: Limits,
     texts: HashMap<Key, Made>,
+    /// The environment of the scene before.
+    around: Option<Arc<EnvironmentMap>>,
 }
 
 /// A text and what belongs to it.
@@ -104,7 +108,8 @@ impl Shaders {
     /// # Errors
     /// See [`RenderError`].
     pub fn prepare(&mut self, scene: &Scene) -> Result<Job, RenderError> {
-        let parts = Parts::new(scene, &self.limits, self.form)?;
+        self.around = EnvironmentMap::renewed(self.around.as_ref(), scene);
+        let parts = Parts::new(scene, &self.limits, self.form, self.around.as_deref())?;
         let turns = Turns(Some(parts.key.in_turns()));
         let made = self.text(parts.key);
         Ok(Job {
@@ -173,6 +178,7 @@ impl Parts {
         scene: &Scene,
         limits: &Limits,
         form: FieldForm,
+        around: Option<&EnvironmentMap>,
     ) -> Result<Parts, RenderError> {
         let (program, region) = match scene.field()? {
             Some(field) => {
@@ -187,9 +193,18 @@ impl Parts {
                 (Program::compile(&field, limits)?, Region::new(&Aabb::EMPTY))
             }
         };
-        let images = images(scene);
+        let mut images = images(scene);
+        if let Some(around) = around {
+            images.extend([&around.image, &around.table, &around.glossy].map(Arc::clone));
+        }
         let grids = program.data().grids.clone();
-        let (table, mut frame) = tables(scene, &images, &grids, frame(scene, &region));
+        let (mut table, mut frame) = tables(scene, &images, &grids, frame(scene, &region));
+        if let Some(around) = around {
+            frame.around_rows = table.len() as u32;
+            push(&mut table, around_row(around, &images));
+            // nothing is left to its colours
+            (frame.sky_top, frame.sky_horizon, frame.sky_bottom) = Default::default();
+        }
         frame.max_steps = program.patient(scene.settings().max_steps);
         frame.quality = u32::from(program.is_fractal())
             | u32::from(program.is_close()) << 1
@@ -223,7 +238,7 @@ impl Job {
 
     /// Whether cones are marched before rays.
     pub fn prepass(&self) -> bool {
-        self.frame.prepass != 0
+        self.frame.prepass != 0 && !self.frame.has_lens()
     }
 
     /// The same scene as a camera sees it, in a picture of this size and antialiasing.
@@ -266,6 +281,11 @@ impl Frame {
         let [first, count, ..] = self.band;
         let down = (first + count).div_ceil(side) - first / side;
         [self.size[0].div_ceil(side), down]
+    }
+
+    /// Whether rays begin all over a lens.
+    fn has_lens(&self) -> bool {
+        self.aperture > 0.0 && self.samples != 0
     }
 
     /// Cones of both sizes.
@@ -359,6 +379,8 @@ fn seen(frame: Frame, camera: &Camera, size: [u32; 2], antialias: Antialias) -> 
         rounding: [view.rounding.slope, view.rounding.constant],
         size,
         half: view.half,
+        aperture: view.aperture,
+        focus: view.focus,
         layers: match antialias {
             Antialias::Coverage { layers } => layers.min(LAYERS),
             Antialias::None | Antialias::Supersample { .. } => 0,
@@ -447,9 +469,15 @@ pub(crate) fn grid_row(grid: &Grid, start: u64) -> layout::Grid {
 }
 
 fn light_row(light: &zeroset_scene::light::Light) -> Light {
+    if let Some(lamp) = Lamp::of(light) {
+        return lamp_row(light, &lamp);
+    }
     let (kind, place) = match light.source {
         LightSource::Directional { direction } => (0.0, -direction),
-        LightSource::Point { position } => (1.0, position),
+        LightSource::Point { position }
+        | LightSource::Rectangle { position, .. }
+        | LightSource::Disc { position, .. }
+        | LightSource::Sphere { position, .. } => (1.0, position),
     };
     let sharpness = match light.shadow {
         Shadow::None | Shadow::Hard => 0.0,
@@ -466,6 +494,69 @@ fn light_row(light: &zeroset_scene::light::Light) -> Light {
         ..Light::default()
     }
 }
+
+/// A light with an extent. Its shadow is sampled, or none.
+fn lamp_row(light: &zeroset_scene::light::Light, lamp: &Lamp<f32>) -> Light {
+    let kind = match lamp.shape {
+        Shape::Rectangle => LAMPS[0],
+        Shape::Disc => LAMPS[1],
+        Shape::Sphere => LAMPS[2],
+    };
+    let shadow = match light.shadow {
+        Shadow::None => Shadow::None,
+        Shadow::Hard | Shadow::Soft { .. } | Shadow::SoftClosest { .. } => Shadow::Hard,
+    };
+    Light {
+        place: lamp.place.array(),
+        kind,
+        radiance: lamp.strength.array(),
+        luminance: luminance(lamp.strength.array()),
+        shadow: number(&shadow) as f32,
+        area: lamp.area,
+        visible: if lamp.visible { 1.0 } else { 0.0 },
+        right: lamp.right.array(),
+        radius: lamp.radius,
+        up: lamp.up.array(),
+        ..Light::default()
+    }
+}
+
+/// `images`: all that are in the texture, those of the environment last.
+fn around_row(around: &EnvironmentMap, images: &[Arc<Image>]) -> Around {
+    let starts: Vec<u64> = texture::starts(images).collect();
+    let place = |back: usize| texture::place(starts[images.len() - back]);
+    let [image, table, glossy] = [3, 2, 1].map(place);
+    let [columns, rows] = around.cells().map(|n| n as f32);
+    let [h0, h1, h2, h3, h4, h5, h6, h7, h8] = around.harmonics.map(|h| h.array());
+    Around {
+        image_row: image[0],
+        image_column: image[1],
+        width: around.image.width as f32,
+        height: around.image.height as f32,
+        table_row: table[0],
+        table_column: table[1],
+        columns,
+        rows,
+        glossy_row: glossy[0],
+        glossy_column: glossy[1],
+        strength: around.strength,
+        cosine: around.turn[0],
+        sine: around.turn[1],
+        h0,
+        h1,
+        h2,
+        h3,
+        h4,
+        h5,
+        h6,
+        h7,
+        h8,
+        ..Around::default()
+    }
+}
+
+/// The kinds of lights with an extent: rectangles, discs, spheres, and what is all around.
+pub(crate) const LAMPS: [f32; 4] = [2.0, 3.0, 4.0, 5.0];
 
 /// The reach of occlusion that has none. Shaders have no infinity.
 const UNLIMITED: f32 = 3.0e38;
