@@ -8,10 +8,13 @@
 
 #![allow(unreachable_pub, reason = "the modules of a test are its own")]
 
+mod around;
 mod camera;
 mod faults;
 mod film;
 mod known;
+mod lamps;
+mod lens;
 mod light;
 mod paths;
 mod pattern;
@@ -30,9 +33,11 @@ use zeroset_testkit::plain::{self, Compiled, Quality};
 
 /// Every check.
 fn checks() -> Vec<Check> {
-    let groups: [&[Check]; 8] = [
+    let groups: [&[Check]; 10] = [
         &camera::CHECKS,
         &film::CHECKS,
+        &lamps::CHECKS,
+        &lens::CHECKS,
         &light::CHECKS,
         &pattern::CHECKS,
         &shadow::CHECKS,
