@@ -20,6 +20,7 @@ use web_time::Instant;
 use wgpu::{Device, PollError, PollType, SubmissionIndex};
 use zeroset_scene::accumulator::Accumulator;
 use zeroset_scene::camera::Camera;
+use zeroset_scene::motion::Moving;
 use zeroset_scene::render::{Observer, Prepared, RenderError, Renderer, Statistics};
 use zeroset_scene::scene::Scene;
 use zeroset_shader::{FieldForm, Job, Shaders};
@@ -140,7 +141,8 @@ impl Renderer for GpuRenderer {
     fn prepare(&self, scene: Arc<Scene>) -> Result<Box<dyn Prepared>, RenderError> {
         let job = self.job(&scene)?;
         let renderer = self.clone();
-        Ok(Box::new(PreparedScene { renderer, job }))
+        let prepared = PreparedScene { renderer, job };
+        Ok(Box::new(Moving::new(scene, Box::new(prepared))))
     }
 }
 

@@ -7,7 +7,7 @@ use crate::files::{self, Cache, Files, Reading, read_whole};
 use crate::folder::{self, Folder};
 use crate::json;
 use crate::limits::Limits;
-use crate::load::{Failed, Language, Loaded, Options};
+use crate::load::{Failed, Language, Loaded, Options, Shutter};
 use crate::naming::default_stem;
 use crate::report::{Report, Source};
 use crate::starlark;
@@ -139,11 +139,33 @@ impl Document {
         })
     }
 
-    /// The scene.
+    /// The scene; with what it is at other moments, where those are wanted.
     ///
     /// # Errors
     /// Everything that can be wrong with it, with the place and what to do.
     pub fn scene(&mut self, options: &Options) -> Result<Loaded, Failed> {
+        let loaded = self.scene_at(options)?;
+        let Shutter { seconds, moments } = loaded.shutter;
+        if !(options.moments && loaded.animated && seconds > 0.0) {
+            return Ok(loaded);
+        }
+        let at = |k: u32| Options {
+            time: options.time + seconds * (f64::from(k) + 0.5) / f64::from(moments),
+            ..options.clone()
+        };
+        let scenes = (0..moments).map(|k| self.scene_at(&at(k)).map(|moment| moment.scene));
+        let scenes = scenes.collect::<Result<Vec<_>, Failed>>()?;
+        match loaded.scene.with_moments(scenes) {
+            Ok(scene) => Ok(Loaded { scene, ..loaded }),
+            Err(error) => Err(Failed {
+                report: Report::new(error.to_string()).into(),
+                files: loaded.files,
+            }),
+        }
+    }
+
+    /// The scene at one time.
+    fn scene_at(&mut self, options: &Options) -> Result<Loaded, Failed> {
         let limits = &options.limits;
         let budget = self.files.budget.again(limits);
         let cache = std::mem::take(&mut self.cache);
@@ -274,6 +296,13 @@ fn finish(
 ) -> Result<Loaded, Failed> {
     let files = draft.files.loaded().to_vec();
     let parameters = std::mem::take(&mut draft.parameters);
+    let shutter = draft
+        .view
+        .as_ref()
+        .map_or_else(Shutter::default, |view| Shutter {
+            seconds: view.shutter,
+            moments: view.moments,
+        });
     let (animated, log) = (draft.animated, std::mem::take(&mut draft.log));
     let warnings = std::mem::take(&mut draft.warnings);
     let stem = default_stem(Path::new(name));
@@ -287,6 +316,7 @@ fn finish(
             scene,
             parameters,
             animated,
+            shutter,
             files,
             log,
             warnings,

@@ -10,6 +10,7 @@ use crate::report::{Place, Report, Source, suggestion};
 use glam::{DVec3, Vec3};
 use std::collections::{BTreeMap, HashMap};
 use zeroset_scene::camera::{Camera, Lens};
+use zeroset_scene::environment::Environment;
 use zeroset_scene::film::Plane;
 use zeroset_scene::light::{self, Fog, Light, Sky};
 use zeroset_scene::material::Material;
@@ -32,7 +33,27 @@ pub(crate) struct CameraDraft {
     pub(crate) height: Option<f64>,
     pub(crate) near: f64,
     pub(crate) far: Option<f64>,
+    /// Radius of the lens.
+    pub(crate) aperture: f64,
+    /// What is in focus; what is looked at where nothing is said.
+    pub(crate) focus: Option<Focus>,
+    /// How long the shutter is open, seconds.
+    pub(crate) shutter: f64,
+    /// Moments of that time.
+    pub(crate) moments: u32,
 }
+
+/// What a camera is focused on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Focus {
+    /// What is so far before it, along the way it looks.
+    Distance(f64),
+    /// What is as far as a point.
+    Point(DVec3),
+}
+
+/// Moments of a shutter that states none.
+pub(crate) const MOMENTS: u32 = 32;
 
 /// Vertical field of view where a file states none, degrees.
 pub(crate) const FOV: f64 = 40.0;
@@ -50,6 +71,10 @@ impl Default for CameraDraft {
             height: None,
             near,
             far,
+            aperture: 0.0,
+            focus: None,
+            shutter: 0.0,
+            moments: MOMENTS,
         }
     }
 }
@@ -67,6 +92,7 @@ pub(crate) struct Draft {
     /// Absent as long as nothing is said of lights.
     pub(crate) lights: Option<Vec<Light>>,
     pub(crate) sky: Option<Sky>,
+    pub(crate) environment: Option<Environment>,
     pub(crate) fog: Option<Fog>,
     pub(crate) settings: Option<Settings>,
     /// Where that which may be stated once was stated.
@@ -98,6 +124,7 @@ impl Draft {
             stated: BTreeMap::new(),
             name: None,
             sky: None,
+            environment: None,
             fog: None,
             settings: None,
             parameters: Vec::new(),
@@ -206,6 +233,7 @@ impl Draft {
             materials: self.materials,
             lights,
             sky,
+            environment: self.environment,
             camera,
             settings,
         };
@@ -285,5 +313,7 @@ pub(crate) fn camera_with(
         lens,
         near: near as f32,
         far: far as f32,
+        aperture: 0.0,
+        focus: 0.0,
     }
 }

@@ -1,6 +1,6 @@
 //! Where the camera stands when a scene does not say so.
 
-use crate::draft::{CameraDraft, camera_with};
+use crate::draft::{CameraDraft, Focus, camera_with};
 use glam::{DMat3, DVec3};
 use zeroset_catalogue::bounds::Aabb;
 use zeroset_scene::camera::Camera;
@@ -53,6 +53,10 @@ pub(crate) fn camera(
         return Err("the camera must have finite numbers and `near` below `far`".into());
     }
     let camera = camera_with(axes, eye, lens, view.near, far);
+    let camera = match view.aperture > 0.0 {
+        true => focused(camera, view, eye, target, axes)?,
+        false => camera,
+    };
     // what is finite in double precision need not be in single precision
     if !(camera.eye.is_finite() && camera.far.is_finite() && camera.near < camera.far) {
         return Err(format!(
@@ -61,6 +65,30 @@ pub(crate) fn camera(
         ));
     }
     Ok(camera)
+}
+
+/// The camera with its lens, in focus where the view says.
+fn focused(
+    camera: Camera,
+    view: &CameraDraft,
+    eye: DVec3,
+    target: DVec3,
+    axes: DMat3,
+) -> Result<Camera, String> {
+    let ahead = |point: DVec3| (eye - point).dot(axes.z_axis);
+    let focus = match view.focus {
+        Some(Focus::Distance(distance)) => distance,
+        Some(Focus::Point(point)) => ahead(point),
+        None => ahead(target),
+    };
+    let (aperture, near) = (view.aperture as f32, focus as f32);
+    if !(focus > 0.0 && near > 0.0 && near.is_finite()) {
+        return Err(format!(
+            "the focus of the camera lies {focus:e} before it: it must lie before the camera, so that `focus` is a distance above 0 \
+             or a point that the camera looks towards"
+        ));
+    }
+    Ok(camera.with_aperture(aperture, near))
 }
 
 /// Columns right, up, backwards. `None` where `back` has no direction.

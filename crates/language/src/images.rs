@@ -1,8 +1,9 @@
-//! Images that surfaces show: PNG and JPEG.
+//! Images that surfaces show, PNG and JPEG, and of light: Radiance.
 
 use crate::budget::LoadBudget;
 use crate::files::Reading;
 use crate::limits::Limits;
+use crate::radiance;
 use glam::Vec3;
 use std::io::Cursor;
 use std::path::Path;
@@ -36,15 +37,36 @@ fn read(
         .map_err(|e| text(&e))?;
     let path = Reading::normal(name).map_err(|e| text(&e))?;
     files.cache.assets.image(&path, &bytes, || {
-        let decoded = decode(&bytes, name, limits, &mut budget)?;
-        let [width, height] = decoded.size;
+        let ([width, height], pixels) = if radiance::is_one(&bytes) {
+            bright(&bytes, name, limits, &mut budget)?
+        } else {
+            let decoded = decode(&bytes, name, limits, &mut budget)?;
+            (decoded.size, decoded.linear())
+        };
         Ok(Image {
             path: path.clone(),
             width,
             height,
-            pixels: decoded.linear(),
+            pixels,
         })
     })
+}
+
+/// Size and linear colours of an image that may be brighter than white.
+fn bright(
+    bytes: &[u8],
+    name: &str,
+    limits: &Limits,
+    budget: &mut LoadBudget,
+) -> Result<([u32; 2], Vec<Vec3>), String> {
+    let room = ImageLimits {
+        name,
+        most: limits.image_pixels,
+    };
+    let (size, rest) = radiance::head(bytes).map_err(|e| room.bad(&e))?;
+    room.charge(size, 0, budget)?;
+    let pixels = radiance::pixels(size, rest).map_err(|e| room.bad(&e))?;
+    Ok((size, pixels))
 }
 
 fn decode(

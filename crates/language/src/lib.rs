@@ -41,6 +41,7 @@ pub mod limits;
 mod lines;
 pub mod load;
 pub mod naming;
+mod radiance;
 pub mod report;
 mod sampled;
 pub mod starlark;

@@ -22,6 +22,17 @@ pub struct Options {
     pub size: Option<[u32; 2]>,
     /// What the scene may cost.
     pub limits: Limits,
+    /// Whether the scene is wanted at all moments that its shutter is open ([`Scene::moments`]), else as it is at its time alone.
+    pub moments: bool,
+}
+
+/// How long a camera's shutter is open.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Shutter {
+    /// Seconds, from the scene's time on.
+    pub seconds: f64,
+    /// Moments of that time that pictures are made of.
+    pub moments: u32,
 }
 
 /// A scene with what loading found out.
@@ -33,6 +44,8 @@ pub struct Loaded {
     pub parameters: Vec<Parameter>,
     /// Whether the scene asked for the time.
     pub animated: bool,
+    /// How long its camera's shutter is open.
+    pub shutter: Shutter,
     /// Every file that was read, the scene's own first.
     pub files: Vec<PathBuf>,
     /// What the script printed, line by line.

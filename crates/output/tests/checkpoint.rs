@@ -55,6 +55,8 @@ fn advance(picture: &mut Progressive, rounds: u32) {
         lens: Lens::Pinhole { fov: 1.0 },
         near: 0.0,
         far: 1.0,
+        aperture: 0.0,
+        focus: 0.0,
     };
     for _ in 0..rounds {
         (picture.advance(&mut Numbers(0), &camera, None, &Silent)).unwrap();

@@ -33,6 +33,17 @@ pub struct Camera {
     pub near: f32,
     /// Rays end here at the latest.
     pub far: f32,
+    /// Radius of the lens, scene units: what is out of focus is as wide as it lies behind or before the focus, as a share of the way
+    /// there, times twice this. 0 for a lens without extent, which shows everything sharp.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub aperture: f32,
+    /// How far before the camera, along the way it looks, the plane is that is in focus, scene units; 0 where the lens has no extent.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub focus: f32,
+}
+
+fn is_zero(x: &f32) -> bool {
+    *x == 0.0
 }
 
 /// At (0, 0, 5), looking at the origin, with a field of view of 40 degrees.
@@ -46,6 +57,8 @@ impl Default for Camera {
             },
             near: 0.0,
             far: 1000.0,
+            aperture: 0.0,
+            focus: 0.0,
         }
     }
 }
@@ -66,7 +79,18 @@ impl Camera {
             lens,
             near: 0.0,
             far: 1000.0,
+            aperture: 0.0,
+            focus: 0.0,
         })
+    }
+
+    /// With a lens of this radius that is focused at this distance along the way it looks.
+    pub fn with_aperture(self, aperture: f32, focus: f32) -> Camera {
+        Camera {
+            aperture,
+            focus,
+            ..self
+        }
     }
 
     /// The ray through a place on the picture: `x` and `y` in pixels from the top left corner, for a picture of this

@@ -40,11 +40,13 @@
 pub mod accumulator;
 pub mod camera;
 pub mod colour;
+pub mod environment;
 pub mod fallback;
 pub mod film;
 pub mod light;
 pub mod material;
 pub mod methods;
+pub mod motion;
 pub mod progressive;
 pub mod render;
 pub mod scene;

@@ -19,6 +19,56 @@ pub enum Source {
         /// Where.
         position: Vec3,
     },
+    /// From a rectangle, to the side of `right x up`, evenly over it. It is no body: rays go on through it.
+    Rectangle {
+        /// Its middle.
+        position: Vec3,
+        /// From there to the middle of its right edge.
+        right: Vec3,
+        /// From there to the middle of its upper edge, at right angles to `right`.
+        up: Vec3,
+        /// Whether it is seen, in mirrors too.
+        #[serde(default = "yes")]
+        visible: bool,
+    },
+    /// From a disc, evenly over it. It is no body: rays go on through it.
+    Disc {
+        /// Its middle.
+        position: Vec3,
+        /// The way it faces (normalised).
+        direction: Vec3,
+        /// Its radius.
+        radius: f32,
+        /// Whether it is seen, in mirrors too.
+        #[serde(default = "yes")]
+        visible: bool,
+    },
+    /// From a sphere, outwards, evenly over it. It is no body: rays go on through it.
+    Sphere {
+        /// Its middle.
+        position: Vec3,
+        /// Its radius.
+        radius: f32,
+        /// Whether it is seen, in mirrors too.
+        #[serde(default = "yes")]
+        visible: bool,
+    },
+}
+
+fn yes() -> bool {
+    true
+}
+
+impl Source {
+    /// Whether it is at a place: a strength is then what a white surface shows that faces it at a distance of 1 (where it is small).
+    pub fn is_near(&self) -> bool {
+        !matches!(self, Source::Directional { .. })
+    }
+
+    /// Whether it has an extent.
+    pub fn is_lamp(&self) -> bool {
+        self.is_near() && !matches!(self, Source::Point { .. })
+    }
 }
 
 /// A light.
@@ -27,9 +77,9 @@ pub enum Source {
 pub struct Light {
     /// Where it comes from.
     pub source: Source,
-    /// Linear colour times intensity.
+    /// Linear colour times intensity; of a source with an extent that at a distance of 1, as if it were a point.
     pub radiance: Vec3,
-    /// Its shadow.
+    /// Its shadow. Those of sources with an extent are sampled, or none.
     pub shadow: Shadow,
 }
 

@@ -1,11 +1,13 @@
 //! The scene as a whole.
 
 use crate::camera::Camera;
+use crate::environment::Environment;
 use crate::light::{Light, Sky};
 use crate::material::Material;
 use crate::settings::{Occlusion, Settings};
 use crate::valid::{self, SceneError};
 use std::collections::HashSet;
+use std::sync::Arc;
 use zeroset_catalogue::bounds::Aabb;
 use zeroset_catalogue::entries::Catalogue;
 use zeroset_field::field::{Field, FieldError, Node, Paint};
@@ -51,6 +53,8 @@ pub struct SceneParts {
     pub lights: Vec<Light>,
     /// What is behind it.
     pub sky: Sky,
+    /// What is all around it, in place of the colours of the sky.
+    pub environment: Option<Environment>,
     /// Who looks.
     pub camera: Camera,
     /// How it is rendered.
@@ -60,7 +64,14 @@ pub struct SceneParts {
 /// What a renderer gets: valid by construction. Its numbers are finite and in their ranges, its references lead somewhere
 /// (see [`valid`]).
 #[derive(Clone, Debug)]
-pub struct Scene(SceneParts);
+pub struct Scene {
+    parts: SceneParts,
+    /// See [`Scene::moments`].
+    moments: Arc<[Arc<Scene>]>,
+}
+
+/// Most moments of a scene.
+pub const MOMENTS: u32 = 1024;
 
 impl SceneParts {
     /// The scene of these parts: [`Scene::new`].
@@ -80,62 +91,103 @@ impl Scene {
     /// materials that are not there, too many of something.
     pub fn new(parts: SceneParts) -> Result<Scene, SceneError> {
         valid::parts(&parts)?;
-        Ok(Scene(parts))
+        let moments = Arc::default();
+        Ok(Scene { parts, moments })
     }
 
     /// What it is made of, to be changed and built again.
     pub fn into_parts(self) -> SceneParts {
-        self.0
+        self.parts
     }
 
     /// What it is made of.
     pub fn parts(&self) -> &SceneParts {
-        &self.0
+        &self.parts
     }
 
     /// Name, usually the file's stem.
     pub fn name(&self) -> &str {
-        &self.0.name
+        &self.parts.name
     }
 
     /// What is seen.
     pub fn objects(&self) -> &[Object] {
-        &self.0.objects
+        &self.parts.objects
     }
 
     /// What it looks like. [`Object::material`] is an index into these.
     pub fn materials(&self) -> &[Material] {
-        &self.0.materials
+        &self.parts.materials
     }
 
     /// What lights it.
     pub fn lights(&self) -> &[Light] {
-        &self.0.lights
+        &self.parts.lights
     }
 
     /// What is behind it.
     pub fn sky(&self) -> &Sky {
-        &self.0.sky
+        &self.parts.sky
+    }
+
+    /// What is all around it, in place of the colours of the sky.
+    pub fn environment(&self) -> Option<&Environment> {
+        self.parts.environment.as_ref()
     }
 
     /// Who looks.
     pub fn camera(&self) -> &Camera {
-        &self.0.camera
+        &self.parts.camera
     }
 
     /// How it is rendered.
     pub fn settings(&self) -> &Settings {
-        &self.0.settings
+        &self.parts.settings
     }
 
-    /// Changes this scene. Where the change is refused the scene stays as it was.
+    /// What the scene is at other moments, evenly spread over the time that the shutter is open, in their order: each sample of a pixel sees
+    /// one of them, with the settings of this scene. None where nothing moves: then all samples see this scene.
+    pub fn moments(&self) -> &[Arc<Scene>] {
+        &self.moments
+    }
+
+    /// This scene, and what it is at other moments. Of their own settings and moments nothing counts.
+    ///
+    /// # Errors
+    /// More than [`MOMENTS`].
+    pub fn with_moments(self, moments: Vec<Scene>) -> Result<Scene, SceneError> {
+        valid::count_moments(moments.len())?;
+        let moments = moments.into_iter().map(Arc::new).collect();
+        Ok(Scene { moments, ..self })
+    }
+
+    /// Changes this scene. Where the change is refused the scene stays as it was. It has no [moments](Scene::moments) then.
     ///
     /// # Errors
     /// What would be wrong with it, and where.
     pub fn edit(&mut self, change: impl FnOnce(&mut SceneParts)) -> Result<(), SceneError> {
-        let mut parts = self.0.clone();
+        let mut parts = self.parts.clone();
         change(&mut parts);
         *self = Scene::new(parts)?;
+        Ok(())
+    }
+
+    /// Changes this scene and what it is at other [moments](Scene::moments). Where a change is refused the scene stays as it was.
+    ///
+    /// # Errors
+    /// What the change says, and what would be wrong with a scene, and where.
+    pub fn edit_moments<E: From<SceneError>>(
+        &mut self,
+        mut change: impl FnMut(&mut SceneParts) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut changed = |scene: &Scene| {
+            let mut parts = scene.parts.clone();
+            change(&mut parts)?;
+            Ok::<Scene, E>(Scene::new(parts)?)
+        };
+        let own = changed(self)?;
+        let moments = self.moments.iter().map(|m| changed(m));
+        *self = own.with_moments(moments.collect::<Result<Vec<Scene>, E>>()?)?;
         Ok(())
     }
 
@@ -145,7 +197,7 @@ impl Scene {
     /// Which of them is out of its range.
     pub fn with_settings(mut self, settings: Settings) -> Result<Scene, SceneError> {
         valid::settings(&settings, valid::SAMPLES).map_err(|e| e.at("settings"))?;
-        self.0.settings = settings;
+        self.parts.settings = settings;
         Ok(self)
     }
 
@@ -155,17 +207,23 @@ impl Scene {
     /// A picture without pixels, or with more than [`valid::PIXELS`].
     pub fn with_size(mut self, size: [u32; 2]) -> Result<Scene, SceneError> {
         valid::size(size).map_err(|e| e.at("size").at("settings"))?;
-        self.0.settings.size = size;
+        self.parts.settings.size = size;
         Ok(self)
     }
 
-    /// This scene seen by another camera.
+    /// This scene seen by another camera, which stands still at all moments.
     ///
     /// # Errors
     /// Which of its numbers is wrong.
     pub fn with_camera(mut self, camera: Camera) -> Result<Scene, SceneError> {
         valid::camera(&camera).map_err(|e| e.at("camera"))?;
-        self.0.camera = camera;
+        self.parts.camera = camera;
+        let seen = |moment: &Arc<Scene>| {
+            let mut moment = Scene::clone(moment);
+            moment.parts.camera = camera;
+            Arc::new(moment)
+        };
+        self.moments = self.moments.iter().map(seen).collect();
         Ok(self)
     }
 

@@ -8,10 +8,11 @@ pub use fault::{Fault, PathStep, SceneError};
 pub use methods::{antialias, integrator, march, occlusion, shadow};
 
 use crate::camera::{Camera, Lens};
+use crate::environment::{self, Environment, Surroundings};
 use crate::light::{Fog, Light, Sky, Source};
 use crate::material::{Image, Ink, Material, Pattern};
 use crate::methods::Value::{Real, Whole};
-use crate::scene::SceneParts;
+use crate::scene::{MOMENTS, SceneParts};
 use crate::settings::Settings;
 use glam::Vec3;
 use methods::setting;
@@ -21,7 +22,7 @@ use zeroset_catalogue::{Dimension, LARGE, SMALL};
 pub type Checked = Result<(), SceneError>;
 
 /// Largest coordinate of a light or a gradient.
-const FAR: f32 = 1e12;
+pub const FAR: f32 = 1e12;
 /// Largest linear colour, intensity included.
 const BRIGHT: f32 = 1e12;
 /// Smallest and largest height of an orthographic view, scene units.
@@ -83,6 +84,8 @@ pub(crate) fn parts(scene: &SceneParts) -> Checked {
         light(l).map_err(|e| e.index(i).at("lights"))?;
     }
     sky(&scene.sky).map_err(|e| e.at("sky"))?;
+    let around = scene.environment.as_ref();
+    around.map_or(Ok(()), |e| environment(e).map_err(|e| e.at("environment")))?;
     camera(&scene.camera).map_err(|e| e.at("camera"))?;
     settings(&scene.settings, SAMPLES).map_err(|e| e.at("settings"))
 }
@@ -103,6 +106,14 @@ pub fn count_lights(given: usize) -> Checked {
     count_of("lights", given, LIGHTS)
 }
 
+/// Whether a scene may have this many moments: [`MOMENTS`] at most.
+///
+/// # Errors
+/// Too many.
+pub fn count_moments(given: usize) -> Checked {
+    count_of("moments", given, MOMENTS as usize)
+}
+
 fn count_of(what: &'static str, given: usize, most: usize) -> Checked {
     if given <= most {
         return Ok(());
@@ -121,7 +132,8 @@ pub fn size([width, height]: [u32; 2]) -> Checked {
     Err(SceneError::new(Fault::Size { width, height }))
 }
 
-/// Whether a camera sees: axes at right angles, a field of view of 1 to 170 degrees, `near` below `far`.
+/// Whether a camera sees: axes at right angles, a field of view of 1 to 170 degrees, `near` below `far`, a focus before it where its
+/// lens has an aperture.
 ///
 /// # Errors
 /// Which number is wrong.
@@ -145,6 +157,12 @@ pub fn camera(camera: &Camera) -> Checked {
     }
     number("near", camera.near, 0.0, f32::MAX)?;
     number("far", camera.far, 0.0, f32::MAX)?;
+    number("aperture", camera.aperture, 0.0, LARGE as f32)?;
+    if camera.aperture > 0.0 {
+        number("focus", camera.focus, SMALL as f32, FAR)?;
+    } else {
+        number("focus", camera.focus, 0.0, FAR)?;
+    }
     if camera.near < camera.far {
         return Ok(());
     }
@@ -301,9 +319,48 @@ pub fn light(light: &Light) -> Checked {
         Source::Point { position } => {
             vector("position", position, FAR).map_err(|e| e.at("source"))?
         }
+        Source::Rectangle {
+            position,
+            right,
+            up,
+            ..
+        } => (vector("position", position, FAR))
+            .and_then(|()| half_side("right", right))
+            .and_then(|()| half_side("up", up))
+            .and_then(|()| at_right_angles(right, up))
+            .map_err(|e| e.at("source"))?,
+        Source::Disc {
+            position,
+            direction: d,
+            radius,
+            ..
+        } => (vector("position", position, FAR))
+            .and_then(|()| direction("direction", d))
+            .and_then(|()| number("radius", radius, LAMP.0, LAMP.1))
+            .map_err(|e| e.at("source"))?,
+        Source::Sphere {
+            position, radius, ..
+        } => (vector("position", position, FAR))
+            .and_then(|()| number("radius", radius, LAMP.0, LAMP.1))
+            .map_err(|e| e.at("source"))?,
     }
     colour("radiance", light.radiance)?;
     shadow(&light.shadow).map_err(|e| e.at("shadow"))
+}
+
+/// Smallest and largest radius, and half side, of a light with an extent.
+pub const LAMP: (f32, f32) = (1e-6, 1e6);
+
+fn half_side(name: &'static str, v: Vec3) -> Checked {
+    vector(name, v, LAMP.1)?;
+    number(name, v.length(), LAMP.0, LAMP.1)
+}
+
+fn at_right_angles(right: Vec3, up: Vec3) -> Checked {
+    if right.normalize().dot(up.normalize()).abs() < 1e-3 {
+        return Ok(());
+    }
+    Err(SceneError::new(Fault::RightAngles).at("up"))
 }
 
 /// Whether a sky's numbers are in their ranges: no negative light, `ambient` 0 to 10.
@@ -319,6 +376,29 @@ pub fn sky(sky: &Sky) -> Checked {
     sky.fog
         .as_ref()
         .map_or(Ok(()), |f| fog(f).map_err(|e| e.at("fog")))
+}
+
+/// Whether an environment's numbers are in their ranges, and it has light: colours without a negative number, none of them endless.
+///
+/// # Errors
+/// Which number is wrong.
+pub fn environment(environment: &Environment) -> Checked {
+    match &environment.source {
+        Surroundings::Image { image: shown } => {
+            let bright = |c: &Vec3| colour("pixels", *c);
+            image(shown)
+                .and_then(|()| shown.pixels.iter().try_for_each(bright))
+                .map_err(|e| e.at("image").at("source"))?;
+        }
+        Surroundings::Clear { turbidity, ground } => {
+            let (least, most) = environment::TURBIDITY;
+            number("turbidity", *turbidity, least, most)
+                .and_then(|()| colour("ground", *ground))
+                .map_err(|e| e.at("source"))?;
+        }
+    }
+    number("strength", environment.strength, 0.0, environment::STRENGTH)?;
+    number("turn", environment.turn, -FAR, FAR)
 }
 
 fn fog(fog: &Fog) -> Checked {

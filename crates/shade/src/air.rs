@@ -39,7 +39,7 @@ impl Air<f32> {
     pub fn of(sky: &Sky, lights: &[Light]) -> Self {
         let sun = lights.iter().find_map(|light| match light.source {
             Source::Directional { direction } => Some((-direction, light.radiance)),
-            Source::Point { .. } => None,
+            _ => None,
         });
         let (sun, radiance) = sun.unwrap_or((glam::Vec3::Y, glam::Vec3::ZERO));
         let shown = sky.sun > 0.0 && radiance != glam::Vec3::ZERO;
@@ -149,7 +149,19 @@ pub fn behind<R: Real<Scalar = f32>>(
     d: Vec3<R>,
     looks: bool,
 ) -> Vec3<R> {
-    let mut seen = sky::colour(colours, d.y);
+    before(sky::colour(colours, d.y), air, y, d, looks)
+}
+
+/// What a ray sees of a colour that is endlessly far away: see [`behind`].
+#[inline(always)]
+pub fn before<R: Real<Scalar = f32>>(
+    colour: Vec3<R>,
+    air: &Air<f32>,
+    y: R,
+    d: Vec3<R>,
+    looks: bool,
+) -> Vec3<R> {
+    let mut seen = colour;
     if looks && air.cosine <= 1.0 {
         seen = seen + disc(air.sun, air.radiance, air.cosine, d);
     }

@@ -6,7 +6,7 @@
 use crate::light::luminance_of;
 use crate::microfacet::{alpha, schlick};
 use crate::sampling::{basis, cosine_direction};
-use crate::surface::{LocalMaterial, mirrored, refraction};
+use crate::surface::{LocalMaterial, Mirrored, mirrored, refraction};
 use zeroset_number::{Real, Vec3, v3};
 
 /// Decisions that a way takes at each surface: what scatters it and whether it ends; where to; and where each of so many lights is looked
@@ -51,7 +51,7 @@ pub fn visible_normal<R: Real>(n: Vec3<R>, v: Vec3<R>, alpha: R, u: [R; 2]) -> V
 
 /// Smith's function of what mirrors hide, over what they show (Walter et al. 2007; Heitz 2014, equation 72).
 #[inline(always)]
-fn hidden<R: Real>(cosine: R, alpha: R) -> R {
+pub fn hidden<R: Real>(cosine: R, alpha: R) -> R {
     let c2 = cosine.sq().max(1e-8);
     ((alpha.sq() * (c2.recip() - 1.0) + 1.0).max(1.0).sqrt() - 1.0) * 0.5
 }
@@ -61,6 +61,32 @@ fn hidden<R: Real>(cosine: R, alpha: R) -> R {
 fn seen_share<R: Real>(to_eye: R, to_light: R, alpha: R) -> R {
     let (eye, light) = (hidden(to_eye, alpha), hidden(to_light, alpha));
     (eye + 1.0) / (eye + light + 1.0)
+}
+
+/// How often a surface scatters with its matte body and with its mirrors; what is left is for a clear body.
+#[derive(Clone, Copy, Debug)]
+pub struct Shares<R> {
+    /// The matte body.
+    pub body: R,
+    /// The mirrors.
+    pub mirror: R,
+    /// A clear body.
+    pub clear: R,
+}
+
+/// See [`scatter`].
+#[inline(always)]
+pub fn shares<R: Real>(what: &LocalMaterial<R>, mirrors: &Mirrored<R>) -> Shares<R> {
+    let clear = what.transmission * what.metallic.one_minus();
+    let body = what.albedo * (mirrors.left * what.transmission.one_minus());
+    let opaque = clear.one_minus();
+    let (w_body, w_mirror) = (luminance_of(body), luminance_of(mirrors.all) * opaque);
+    let all = (w_body + w_mirror + clear).max(1e-12);
+    Shares {
+        body: w_body / all,
+        mirror: w_mirror / all,
+        clear: (clear / all).max(1e-12),
+    }
 }
 
 /// Chooses where a ray of direction `d` goes on that meets a surface of normal `n` on its side. `ior` is the index of refraction behind a
@@ -83,10 +109,11 @@ pub fn scatter<R: Real>(
     let body = what.albedo * (mirrors.left * what.transmission.one_minus());
     // how often each is chosen
     let opaque = clear.one_minus();
-    let (w_body, w_mirror) = (luminance_of(body), luminance_of(mirrors.all) * opaque);
-    let all = (w_body + w_mirror + clear).max(1e-12);
-    let (p_body, p_mirror) = (w_body / all, w_mirror / all);
-    let p_clear = (clear / all).max(1e-12);
+    let Shares {
+        body: p_body,
+        mirror: p_mirror,
+        clear: p_clear,
+    } = shares(what, &mirrors);
     let is_body = choice.below(p_body);
     let is_clear = (choice - p_body).above(p_mirror);
 

@@ -46,7 +46,10 @@ pub fn towards<R: Real<Scalar = f32>>(source: &Source, p: Vec3<R>) -> (Vec3<R>, 
         Source::Directional { direction } => {
             (p.like(parameters(-*direction)), p.x.lit(f32::INFINITY))
         }
-        Source::Point { position } => towards_point(parameters(*position), p),
+        Source::Point { position }
+        | Source::Rectangle { position, .. }
+        | Source::Disc { position, .. }
+        | Source::Sphere { position, .. } => towards_point(parameters(*position), p),
     }
 }
 
@@ -113,7 +116,12 @@ pub fn mirror_highlight<R: Real>(
     cosine: R,
     roughness: R,
 ) -> [R; 2] {
-    let alpha = alpha(roughness).max(LIGHT_ALPHA);
+    highlight_of(n, to, d, cosine, alpha(roughness).max(LIGHT_ALPHA))
+}
+
+/// See [`mirror_highlight`]: of mirrors with a distribution of this width.
+#[inline(always)]
+pub fn highlight_of<R: Real>(n: Vec3<R>, to: Vec3<R>, d: Vec3<R>, cosine: R, alpha: R) -> [R; 2] {
     let half = to - d;
     let half = half / half.length().max(1e-12);
     let to_eye = (-n.dot(d)).max(1e-4);
@@ -186,7 +194,7 @@ pub fn arrival<R: Real<Scalar = f32>>(
     lit: R,
     finish: R,
 ) -> Arrival<R> {
-    let point = matches!(light.source, Source::Point { .. });
+    let point = light.source.is_near();
     let response = response(shading, point, to, n, d, finish);
     let arriving = response.falloff * lit;
     let colour = light.radiance.to_array();

@@ -94,6 +94,9 @@ pub fn decided(index: u32, key: [u32; 2], decision: u32) -> [f32; 2] {
     [unit(owen(x, a)), unit(owen(y, b))]
 }
 
+/// The decision of [`decided`] where on the lens a ray from the eye begins: not one of those at surfaces.
+pub const LENS: u32 = 0x4c65_6e73;
+
 /// A direction around `axis` within a cone whose angle has this cosine, spread evenly, from a point of the unit square.
 #[inline(always)]
 pub fn cone_direction<R: Real>(axis: Vec3<R>, cosine: R, u: R, v: R) -> Vec3<R> {

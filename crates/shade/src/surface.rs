@@ -167,6 +167,30 @@ fn physical<R: Real>(
     body + mirrors.again.times(highlight) + mirrors.all.times(around) + what.emission
 }
 
+/// What a surface makes of light from all around, beside [`colour`]: `arriving` is what arrives at an open surface that faces where most of it
+/// is seen, `seen` what a mirror as rough shows, of which small mirrors reflect all but the share `followed`.
+#[inline(always)]
+pub fn around<R: Real>(
+    shading: Shading,
+    what: &LocalMaterial<R>,
+    [n, d]: [Vec3<R>; 2],
+    open: R,
+    [arriving, seen]: [Vec3<R>; 2],
+    followed: R,
+) -> Vec3<R> {
+    let matte = what.albedo.times(arriving) * open;
+    match shading {
+        Shading::Physical => {
+            let cosine = (-n.dot(d)).clamp01();
+            let mirrors = mirrored(what, cosine);
+            let body = matte * (mirrors.left * what.transmission.one_minus());
+            let share = reflected_visibility(open, cosine, what.roughness);
+            body + mirrors.all.times(seen) * (share * followed.one_minus())
+        }
+        Shading::Phong | Shading::Lambert | Shading::LambertLegacy => matte,
+    }
+}
+
 /// How a clear body takes a ray: the shares that are reflected and let through, and the direction of the latter.
 #[derive(Clone, Copy, Debug)]
 pub struct Refraction<R> {

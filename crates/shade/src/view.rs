@@ -52,6 +52,10 @@ pub struct View {
     /// Nearer than this to the surface a ray is under its footprint: `footprint` pixel widths in the middle of the picture, and
     /// what rounding adds.
     pub threshold: Linear,
+    /// Radius of the lens; 0 where it has no extent.
+    pub aperture: f32,
+    /// How far before it, along the way it looks, what is sharp lies; 1 where the lens has no extent.
+    pub focus: f32,
     /// Share of a pixel's width that is its footprint.
     footprint: f32,
     /// Share of a pixel's footprint that rays are marched with: in small pictures as if they were of [`FINE`] rows.
@@ -95,6 +99,12 @@ impl View {
             pixel,
             rounding,
             threshold,
+            aperture: camera.aperture,
+            focus: if camera.aperture > 0.0 {
+                camera.focus
+            } else {
+                1.0
+            },
             footprint,
             fine: (height as f32 / FINE as f32).min(1.0),
         }
@@ -128,6 +138,8 @@ impl View {
                 slope: rounding.slope,
                 constant: footprint * width + rounding.constant,
             },
+            aperture: 0.0,
+            focus: 1.0,
             footprint,
             fine: 1.0,
         }
@@ -187,6 +199,29 @@ impl View {
         }
     }
 
+    /// The ray through (`x`, `y`) pixels from a place on the lens, which is given by a point of the unit square: origin and direction. All
+    /// of them meet where the ray through the middle of the lens comes to the plane that is in focus.
+    #[inline(always)]
+    pub fn lens_ray<R: Real<Scalar = f32>>(&self, x: R, y: R, u: [R; 2]) -> (Vec3<R>, Vec3<R>) {
+        let q = on_plane(v2(x, y), v2(self.half[0], self.half[1]), self.scale);
+        let [a, b] = on_disc(u);
+        let at = v2(a * self.aperture, b * self.aperture);
+        let (right, up) = (vector(self.right), vector(self.up));
+        let (back, eye) = (vector(self.back), vector(self.eye));
+        let nearer = 1.0 / self.focus;
+        if self.pinhole {
+            let to = v2(q.x - at.x * nearer, q.y - at.y * nearer);
+            (across(at, right, up, eye), pinhole_ray(to, right, up, back))
+        } else {
+            let to = v2(-(at.x * nearer), -(at.y * nearer));
+            let from = v2(q.x + at.x, q.y + at.y);
+            (
+                across(from, right, up, eye),
+                pinhole_ray(to, right, up, back),
+            )
+        }
+    }
+
     /// A cone around the ray through (`x`, `y`) that holds all rays through the square of `reach` pixels around it: its
     /// radius at distance `t` is `slope * t + constant`.
     ///
@@ -206,6 +241,21 @@ impl View {
 #[inline(always)]
 pub fn on_plane<R: Real>(at: Vec2<R>, half: Vec2<R::Scalar>, scale: R::Scalar) -> Vec2<R> {
     v2((at.x - half.x) * scale, -(at.y - half.y) * scale)
+}
+
+/// A point of the unit disc from one of the unit square, by rings: areas keep their ratios, and what is near stays near (Shirley and
+/// Chiu 1997).
+#[inline(always)]
+pub fn on_disc<R: Real>([u, v]: [R; 2]) -> [R; 2] {
+    let (a, b) = (u * 2.0 - 1.0, v * 2.0 - 1.0);
+    let wide = a.sq().above(b.sq());
+    let radius = R::choose(wide, a, b);
+    let other = R::choose(wide, b, a);
+    let nonzero = R::choose(radius.abs().above(1e-12), radius, radius.lit(1.0));
+    let turn = other / nonzero * std::f32::consts::FRAC_PI_4;
+    let turn = R::choose(wide, turn, -(turn - std::f32::consts::FRAC_PI_2));
+    let (sin, cos) = turn.sin_cos();
+    [radius * cos, radius * sin]
 }
 
 /// The direction of a ray from the eye through `q` on the plane at distance 1.

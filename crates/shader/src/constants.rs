@@ -1,10 +1,11 @@
 //! Constants that the CPU's renderer and shaders share, as WGSL.
 
+use crate::job::LAMPS;
 use std::fmt::Write;
 use zeroset_field::program::{FLAT, INSIDE_MARKS};
 use zeroset_shade::{
-    air, bsdf, coverage, march, occlusion, pattern, sampling, secondary, shadow, skin, surface,
-    view,
+    air, bsdf, coverage, environment, march, occlusion, pattern, sampling, secondary, shadow, skin,
+    surface, view,
 };
 
 /// The value of a constant.
@@ -100,12 +101,22 @@ fn constants() -> Vec<(&'static str, Value)> {
         // sampling
         ("PCG_FACTOR", Whole(sampling::PCG[0])),
         ("PCG_SUMMAND", Whole(sampling::PCG[1])),
+        ("LENS_DECISION", Whole(sampling::LENS)),
         ("HIT_SEEDS", Whole(sampling::HIT_SEEDS)),
         ("UNIT", Number(sampling::UNIT)),
         ("ENDLESS", Number(air::ENDLESS)),
         // rays that go on
         ("FAINTEST", Number(surface::FAINTEST)),
         // paths
+        ("LAMP_RECTANGLE", Number(LAMPS[0])),
+        ("LAMP_DISC", Number(LAMPS[1])),
+        ("LAMP_SPHERE", Number(LAMPS[2])),
+        ("LAMP_AROUND", Number(LAMPS[3])),
+        ("AROUND_LEVELS", Number(environment::LEVELS as f32)),
+        ("AROUND_WIDTH", Number(environment::GLOSSY[0] as f32)),
+        ("AROUND_HEIGHT", Number(environment::GLOSSY[1] as f32)),
+        ("AROUND_DECISION", Whole(environment::DECISION)),
+        ("LAMP_PI", Number(std::f32::consts::PI)),
         ("PATH_DECISIONS", Whole(bsdf::DECISIONS)),
         ("PATH_SURE", Whole(bsdf::SURE)),
         ("PATH_LIKELIEST", Number(bsdf::LIKELIEST)),

@@ -13,6 +13,7 @@ use zeroset_field::program::Limits;
 use zeroset_scene::render::RenderError;
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings;
+use zeroset_shade::environment::EnvironmentMap;
 
 /// Parameters, table rows, pixels of images, samples of grids and instructions that a file may have, of each: compilers of shaders give up on more.
 const LARGEST: usize = 4000;
@@ -164,7 +165,13 @@ fn one_line(name: &str) -> String {
 
 /// Everything but entry points.
 fn body(scene: &Scene) -> Result<String, ExportError> {
-    let parts = Parts::new(scene, &Limits::default(), FieldForm::Compiled)?;
+    let around = EnvironmentMap::renewed(None, scene);
+    let parts = Parts::new(
+        scene,
+        &Limits::default(),
+        FieldForm::Compiled,
+        around.as_deref(),
+    )?;
     let large = [
         ("instructions", parts.key.length()),
         ("parameters", parts.params.len()),

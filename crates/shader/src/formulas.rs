@@ -11,7 +11,8 @@ use zeroset_shade::sky::{self, SkyColours};
 use zeroset_shade::surface::{self, Lighting, LocalMaterial};
 use zeroset_shade::view::{self, Linear};
 use zeroset_shade::{
-    air, bsdf, light, march, normal, occlusion, sampling, secondary, shadow, skin, tone,
+    air, bsdf, environment, lamp, light, march, normal, occlusion, sampling, secondary, shadow,
+    skin, tone,
 };
 
 /// A formula that shaders call.
@@ -128,6 +129,7 @@ formulas! {
         view::enter(least, most, origin, direction, slope, constant);
     fn leave_box(least: Vec3, most: Vec3, origin: Vec3, direction: Vec3, slope: Number, constant: Number) =
         view::leave(least, most, origin, direction, slope, constant);
+    fn on_disc(u: Vec2) = view::on_disc(u.array());
     fn view_narrowness(direction: Vec3, back: Vec3) = view::narrowness(direction, back);
     fn width_of_pixel(t: Number, narrow: Number, pixel: Vec2) = view::pixel_width(t, narrow, linear(pixel));
     fn radius_of_footprint(t: Number, narrow: Number, share: Vec2, rounding: Vec2) =
@@ -191,6 +193,47 @@ formulas! {
     fn sun_disc(sun: Vec3, radiance: Vec3, cosine: Number, direction: Vec3) =
         air::disc(sun, radiance, cosine, direction);
     fn towards_point(place: Vec3, point: Vec3) = light::towards_point(place, point);
+    fn towards_sheet(place: Vec3, right: Vec3, up: Vec3, point: Vec3, at: Vec2) = {
+        let aimed = lamp::sheet(place, right, up, point, at.array());
+        (aimed.to, aimed.distance)
+    };
+    fn sheet_falloff(right: Vec3, up: Vec3, to: Vec3, distance: Number) = lamp::sheet_falloff(right, up, to, distance);
+    fn towards_sphere(place: Vec3, radius: Number, point: Vec3, u: Vec2) = {
+        let aimed = lamp::sphere(place, radius, point, u.array());
+        (aimed.to, aimed.distance)
+    };
+    fn seen_sphere(place: Vec3, radius: Number, point: Vec3) = {
+        lamp::sphere_falloff(radius, (place - point).length_squared().max(1e-24))
+    };
+    fn meet_sheet(place: Vec3, right: Vec3, up: Vec3, origin: Vec3, direction: Vec3) =
+        lamp::meet_sheet(place, right, up, origin, direction);
+    fn meet_sphere(place: Vec3, radius: Number, origin: Vec3, direction: Vec3) =
+        lamp::meet_sphere(place, radius, origin, direction);
+    fn lamp_highlight(normal: Vec3, to: Vec3, direction: Vec3, roughness: Number) =
+        lamp::highlight(normal, to, direction, roughness);
+    fn lamp_density(falloff: Number, area: Number) = lamp::density(falloff, area);
+    fn balance(density: Number, other: Number) = lamp::balance(density, other);
+    fn scatter_density(albedo: Vec3, finish: Vec4, normal: Vec3, direction: Vec3, to: Vec3) =
+        lamp::likelihood(&material(albedo, albedo, finish), normal, direction, to);
+    fn place_of_direction(direction: Vec3) = environment::place_of(direction);
+    fn direction_of_place(place: Vec2) = environment::direction_of(place.array());
+    fn turned_around(direction: Vec3, cosine: Number, sine: Number) = environment::turned(direction, cosine, sine);
+    fn density_of_direction(density: Number, sine: Number) = environment::over_directions(density, sine);
+    fn arriving_around(
+        normal: Vec3, a: Vec3, b: Vec3, c: Vec3, d: Vec3, e: Vec3, f: Vec3, g: Vec3, h: Vec3, i: Vec3
+    ) = environment::arriving(normal, [a, b, c, d, e, f, g, h, i]);
+    fn surface_around@Physical(
+        albedo: Vec3, finish: Vec4, normal: Vec3, direction: Vec3, open: Number, arriving: Vec3, seen: Vec3, followed: Number
+    ) = {
+        let what = material(albedo, albedo, finish);
+        surface::around(Shading::Physical, &what, [normal, direction], open, [arriving, seen], followed)
+    };
+    fn surface_around@Matte(
+        albedo: Vec3, finish: Vec4, normal: Vec3, direction: Vec3, open: Number, arriving: Vec3, seen: Vec3, followed: Number
+    ) = {
+        let what = material(albedo, albedo, finish);
+        surface::around(Shading::Phong, &what, [normal, direction], open, [arriving, seen], followed)
+    };
     fn light_response@Physical(to: Vec3, distance: Number, kind: Number, normal: Vec3, direction: Vec3, finish: Number) =
         response(Shading::Physical, (to, distance), kind, normal, direction, finish);
     fn light_response@Phong(to: Vec3, distance: Number, kind: Number, normal: Vec3, direction: Vec3, finish: Number) =

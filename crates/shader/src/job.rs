@@ -2,7 +2,7 @@
 
 use crate::entry::{CONE_SIDES, MARGIN};
 use crate::field::place_number;
-use crate::layout::{self, Frame, Light, Material, Occluder, TexturePart};
+use crate::layout::{self, Around, Frame, Light, Material, Occluder, TexturePart};
 use crate::source::{Key, number, pattern_kind, reach};
 use crate::texture;
 use std::collections::{HashMap, HashSet};
@@ -21,6 +21,8 @@ use zeroset_scene::settings::{
 use zeroset_shade::air::Air;
 use zeroset_shade::coat::{Coat, compiled};
 use zeroset_shade::coverage::LAYERS;
+use zeroset_shade::environment::EnvironmentMap;
+use zeroset_shade::lamp::{Lamp, Shape};
 use zeroset_shade::light::luminance;
 use zeroset_shade::pattern::{Part, PartInk, Texture};
 use zeroset_shade::skin::has_skins;
@@ -48,6 +50,8 @@ pub struct Shaders {
     form: FieldForm,
     limits: Limits,
     texts: HashMap<Key, Made>,
+    /// The environment of the scene before.
+    around: Option<Arc<EnvironmentMap>>,
 }
 
 /// A text and what belongs to it.
@@ -104,7 +108,8 @@ impl Shaders {
     /// # Errors
     /// See [`RenderError`].
     pub fn prepare(&mut self, scene: &Scene) -> Result<Job, RenderError> {
-        let parts = Parts::new(scene, &self.limits, self.form)?;
+        self.around = EnvironmentMap::renewed(self.around.as_ref(), scene);
+        let parts = Parts::new(scene, &self.limits, self.form, self.around.as_deref())?;
         let turns = Turns(Some(parts.key.in_turns()));
         let made = self.text(parts.key);
         Ok(Job {
@@ -173,11 +178,22 @@ impl Parts {
         scene: &Scene,
         limits: &Limits,
         form: FieldForm,
+        around: Option<&EnvironmentMap>,
     ) -> Result<Parts, RenderError> {
         let (program, region) = compiled(scene, limits)?;
-        let images = images(scene);
+        let mut images = images(scene);
+        if let Some(around) = around {
+            images.extend([&around.image, &around.table, &around.glossy].map(Arc::clone));
+        }
         let grids = program.data().grids.clone();
-        let (table, mut frame) = tables(scene, &program, &images, &grids, frame(scene, &region));
+        let (mut table, mut frame) =
+            tables(scene, &program, &images, &grids, frame(scene, &region));
+        if let Some(around) = around {
+            frame.around_rows = table.len() as u32;
+            push(&mut table, around_row(around, &images));
+            // nothing is left to its colours
+            (frame.sky_top, frame.sky_horizon, frame.sky_bottom) = Default::default();
+        }
         frame.max_steps = program.patient(scene.settings().max_steps);
         frame.quality = u32::from(program.is_fractal())
             | u32::from(program.is_close()) << 1
@@ -211,7 +227,7 @@ impl Job {
 
     /// Whether cones are marched before rays.
     pub fn prepass(&self) -> bool {
-        self.frame.prepass != 0
+        self.frame.prepass != 0 && !self.frame.has_lens()
     }
 
     /// The same scene as a camera sees it, in a picture of this size and antialiasing.
@@ -254,6 +270,11 @@ impl Frame {
         let [first, count, ..] = self.band;
         let down = (first + count).div_ceil(side) - first / side;
         [self.size[0].div_ceil(side), down]
+    }
+
+    /// Whether rays begin all over a lens.
+    fn has_lens(&self) -> bool {
+        self.aperture > 0.0 && self.samples != 0
     }
 
     /// Cones of both sizes.
@@ -347,6 +368,8 @@ fn seen(frame: Frame, camera: &Camera, size: [u32; 2], antialias: Antialias) -> 
         rounding: [view.rounding.slope, view.rounding.constant],
         size,
         half: view.half,
+        aperture: view.aperture,
+        focus: view.focus,
         layers: match antialias {
             Antialias::Coverage { layers } => layers.min(LAYERS),
             Antialias::None | Antialias::Supersample { .. } => 0,
@@ -455,9 +478,15 @@ pub(crate) fn grid_row(grid: &Grid, start: u64) -> layout::Grid {
 }
 
 fn light_row(light: &zeroset_scene::light::Light) -> Light {
+    if let Some(lamp) = Lamp::of(light) {
+        return lamp_row(light, &lamp);
+    }
     let (kind, place) = match light.source {
         LightSource::Directional { direction } => (0.0, -direction),
-        LightSource::Point { position } => (1.0, position),
+        LightSource::Point { position }
+        | LightSource::Rectangle { position, .. }
+        | LightSource::Disc { position, .. }
+        | LightSource::Sphere { position, .. } => (1.0, position),
     };
     let sharpness = match light.shadow {
         Shadow::None | Shadow::Hard => 0.0,
@@ -474,6 +503,69 @@ fn light_row(light: &zeroset_scene::light::Light) -> Light {
         ..Light::default()
     }
 }
+
+/// A light with an extent. Its shadow is sampled, or none.
+fn lamp_row(light: &zeroset_scene::light::Light, lamp: &Lamp<f32>) -> Light {
+    let kind = match lamp.shape {
+        Shape::Rectangle => LAMPS[0],
+        Shape::Disc => LAMPS[1],
+        Shape::Sphere => LAMPS[2],
+    };
+    let shadow = match light.shadow {
+        Shadow::None => Shadow::None,
+        Shadow::Hard | Shadow::Soft { .. } | Shadow::SoftClosest { .. } => Shadow::Hard,
+    };
+    Light {
+        place: lamp.place.array(),
+        kind,
+        radiance: lamp.strength.array(),
+        luminance: luminance(lamp.strength.array()),
+        shadow: number(&shadow) as f32,
+        area: lamp.area,
+        visible: if lamp.visible { 1.0 } else { 0.0 },
+        right: lamp.right.array(),
+        radius: lamp.radius,
+        up: lamp.up.array(),
+        ..Light::default()
+    }
+}
+
+/// `images`: all that are in the texture, those of the environment last.
+fn around_row(around: &EnvironmentMap, images: &[Arc<Image>]) -> Around {
+    let starts: Vec<u64> = texture::starts(images).collect();
+    let place = |back: usize| texture::place(starts[images.len() - back]);
+    let [image, table, glossy] = [3, 2, 1].map(place);
+    let [columns, rows] = around.cells().map(|n| n as f32);
+    let [h0, h1, h2, h3, h4, h5, h6, h7, h8] = around.harmonics.map(|h| h.array());
+    Around {
+        image_row: image[0],
+        image_column: image[1],
+        width: around.image.width as f32,
+        height: around.image.height as f32,
+        table_row: table[0],
+        table_column: table[1],
+        columns,
+        rows,
+        glossy_row: glossy[0],
+        glossy_column: glossy[1],
+        strength: around.strength,
+        cosine: around.turn[0],
+        sine: around.turn[1],
+        h0,
+        h1,
+        h2,
+        h3,
+        h4,
+        h5,
+        h6,
+        h7,
+        h8,
+        ..Around::default()
+    }
+}
+
+/// The kinds of lights with an extent: rectangles, discs, spheres, and what is all around.
+pub(crate) const LAMPS: [f32; 4] = [2.0, 3.0, 4.0, 5.0];
 
 /// The reach of occlusion that has none. Shaders have no infinity.
 const UNLIMITED: f32 = 3.0e38;

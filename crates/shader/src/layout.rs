@@ -183,12 +183,12 @@ shared! {
         density: f32,
         /// Edges that a pixel may be parted by.
         layers: u32,
-        /// Not used.
-        pad_a: u32,
-        /// Not used.
-        pad_b: u32,
-        /// Not used.
-        pad_c: u32,
+        /// Radius of the lens; 0 where it has no extent.
+        aperture: f32,
+        /// How far before it, along the way it looks, what is sharp lies.
+        focus: f32,
+        /// First row of the environment.
+        around_rows: u32,
     }
 
     /// What one dispatch covers.
@@ -211,7 +211,7 @@ shared! {
     Light {
         /// The way towards it (kind 0), or where it is (kind 1).
         place: [f32; 3],
-        /// 0 directional, 1 point.
+        /// 0 directional, 1 point, 2 rectangle, 3 disc, 4 sphere.
         kind: f32,
         /// Linear colour times intensity.
         radiance: [f32; 3],
@@ -221,10 +221,83 @@ shared! {
         shadow: f32,
         /// Sharpness of the penumbra.
         sharpness: f32,
+        /// What a lamp shows to one side, scene units squared.
+        area: f32,
+        /// 1 where rays meet the lamp.
+        visible: f32,
+        /// From the middle of a lamp to its right edge.
+        right: [f32; 3],
+        /// Radius of a sphere.
+        radius: f32,
+        /// From the middle of a lamp to its upper edge.
+        up: [f32; 3],
         /// Not used.
-        pad_a: f32,
+        pad: f32,
+    }
+
+    /// An environment, as rows of the table. Where its images begin is the row of their first texel through all layers of the texture, and
+    /// its column.
+    Around {
+        /// Row of what is seen.
+        image_row: f32,
+        /// Column of it.
+        image_column: f32,
+        /// Pixels across.
+        width: f32,
+        /// Pixels down.
+        height: f32,
+        /// Row of the table that directions are chosen by.
+        table_row: f32,
+        /// Column of it.
+        table_column: f32,
+        /// Cells across.
+        columns: f32,
+        /// Cells down.
+        rows: f32,
+        /// Row of what rough mirrors show.
+        glossy_row: f32,
+        /// Column of it.
+        glossy_column: f32,
+        /// What its light is multiplied by.
+        strength: f32,
         /// Not used.
-        pad_b: f32,
+        pad: f32,
+        /// What arrives at open surfaces: the first nine spherical harmonics.
+        h0: [f32; 3],
+        /// Cosine of how far it is turned.
+        cosine: f32,
+        /// The second.
+        h1: [f32; 3],
+        /// Sine of how far it is turned.
+        sine: f32,
+        /// The third.
+        h2: [f32; 3],
+        /// Not used.
+        pad_c: f32,
+        /// The fourth.
+        h3: [f32; 3],
+        /// Not used.
+        pad_d: f32,
+        /// The fifth.
+        h4: [f32; 3],
+        /// Not used.
+        pad_e: f32,
+        /// The sixth.
+        h5: [f32; 3],
+        /// Not used.
+        pad_f: f32,
+        /// The seventh.
+        h6: [f32; 3],
+        /// Not used.
+        pad_g: f32,
+        /// The eighth.
+        h7: [f32; 3],
+        /// Not used.
+        pad_h: f32,
+        /// The ninth.
+        h8: [f32; 3],
+        /// Not used.
+        pad_i: f32,
     }
 
     /// An ambient occlusion method, as rows of the table.

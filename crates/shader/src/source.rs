@@ -6,8 +6,8 @@ use crate::field::FieldSource;
 use crate::formulas;
 use crate::job::{FieldForm, LONGEST_COMPILED, bounces};
 use crate::layout::{
-    Frame, Grid, Light, LightSum, Material, Occluder, Sample, Shared, SurfaceSum, TexturePart,
-    Tile, loader, rows,
+    Around, Frame, Grid, Light, LightSum, Material, Occluder, Sample, Shared, SurfaceSum,
+    TexturePart, Tile, loader, rows,
 };
 use crate::texture;
 use std::cmp::Ordering;
@@ -58,6 +58,10 @@ pub(crate) struct Key {
     occlusion: BTreeSet<Case>,
     /// Whether any light casts a shadow.
     shadows: bool,
+    /// Whether any light has an extent, or comes from all around.
+    lamps: bool,
+    /// Whether light comes from all around, by an image.
+    around: bool,
     patterns: BTreeSet<Case>,
     /// Most parts of a texture.
     texture_parts: u32,
@@ -173,7 +177,11 @@ impl Key {
             },
             ways: ways(scene.settings()),
             occlusion: methods.filter_map(occlusion).collect(),
-            shadows: scene.lights().iter().any(|l| casts(&l.shadow)),
+            shadows: scene.environment().is_some()
+                || scene.lights().iter().any(|l| casts(&l.shadow)),
+            lamps: scene.lights().iter().any(|l| l.source.is_lamp())
+                || scene.environment().is_some(),
+            around: scene.environment().is_some(),
             patterns: BTreeSet::new(),
             texture_parts: 0,
             looks: 0,
@@ -206,7 +214,7 @@ impl Key {
 
     /// Whether a material shows an image.
     pub(crate) fn shows_images(&self) -> bool {
-        self.patterns.iter().any(|case| case.has_image)
+        self.around || self.patterns.iter().any(|case| case.has_image)
     }
 
     /// Whether the field has grids of samples.
@@ -299,6 +307,7 @@ impl Key {
         for declaration in [
             Light::declaration(),
             Occluder::declaration(),
+            Around::declaration(),
             Material::declaration(),
             TexturePart::declaration(),
             Sample::declaration(),
@@ -310,6 +319,7 @@ impl Key {
             ("OCCLUDER", rows::<Occluder>()),
             ("MATERIAL", rows::<Material>()),
             ("TEXTUREPART", rows::<TexturePart>()),
+            ("AROUND", rows::<Around>()),
         ] {
             // writing to a string cannot fail
             let _ = writeln!(text, "const {name}_ROWS: u32 = {rows}u;");
@@ -319,6 +329,7 @@ impl Key {
         text += &loader::<Occluder>();
         text += &loader::<Material>();
         text += &loader::<TexturePart>();
+        text += &loader::<Around>();
         if self.reads_grids() {
             text += &grids();
         }
@@ -336,6 +347,7 @@ impl Key {
         // writing to a string cannot fail
         let _ = writeln!(text, "const WAITING: u32 = {}u;", self.waiting);
         text += finish(self.shading);
+        text += &physical(self.shading);
         if !self.in_turns {
             text += NEVER;
         }
@@ -396,6 +408,16 @@ impl Key {
         } else {
             include_str!("stage/shadow_none.wgsl")
         });
+        stages.push(if self.lamps {
+            include_str!("stage/lamps.wgsl")
+        } else {
+            include_str!("stage/lamps_none.wgsl")
+        });
+        stages.push(if self.around {
+            include_str!("stage/environment.wgsl")
+        } else {
+            include_str!("stage/environment_none.wgsl")
+        });
         let cases = self.occlusion.iter().chain(&self.patterns);
         stages.extend(cases.filter_map(|case| Some(case.stage?.text)));
         stages
@@ -420,6 +442,18 @@ impl Key {
         });
         if self.secondary() {
             names.extend(BEAMS);
+        }
+        if self.lamps {
+            names.extend(LAMPS);
+        }
+        if self.around {
+            names.extend(AROUND);
+            names.insert(match self.shading {
+                Shading::Physical => "surface_around@Physical",
+                Shading::Phong | Shading::Lambert | Shading::LambertLegacy => {
+                    "surface_around@Matte"
+                }
+            });
         }
         let stages = self.march.iter().chain(self.normals).chain(self.ways);
         names.extend(stages.flat_map(|stage| stage.formulas));
@@ -546,6 +580,12 @@ fn finish(shading: Shading) -> &'static str {
     }
 }
 
+/// Whether surfaces are small mirrors over a body.
+fn physical(shading: Shading) -> String {
+    let is = matches!(shading, Shading::Physical);
+    format!("fn is_physical() -> bool {{\n    return {is};\n}}\n")
+}
+
 /// A row of the table, from the uniform buffer.
 const ROW: &str = "
 fn table_at(i: u32) -> vec4f {
@@ -581,7 +621,7 @@ const TEXTURES: [&str; 4] = [
 ];
 
 /// Formulas that every picture needs.
-const EVERYWHERE: [&str; 25] = [
+const EVERYWHERE: [&str; 26] = [
     "false_position",
     "on_plane",
     "pinhole_ray",
@@ -589,6 +629,7 @@ const EVERYWHERE: [&str; 25] = [
     "cone_slope",
     "enter_box",
     "leave_box",
+    "on_disc",
     "view_narrowness",
     "width_of_pixel",
     "radius_of_footprint",
@@ -607,6 +648,28 @@ const EVERYWHERE: [&str; 25] = [
     "fog_share",
     "fog_light",
     "sun_disc",
+];
+
+/// Those of `stage/environment.wgsl`.
+const AROUND: [&str; 5] = [
+    "place_of_direction",
+    "direction_of_place",
+    "turned_around",
+    "density_of_direction",
+    "arriving_around",
+];
+
+/// Those of `stage/lamps.wgsl`.
+const LAMPS: [&str; 9] = [
+    "towards_sheet",
+    "sheet_falloff",
+    "towards_sphere",
+    "seen_sphere",
+    "meet_sheet",
+    "meet_sphere",
+    "lamp_density",
+    "balance",
+    "scatter_density",
 ];
 
 /// Those of `stage/secondary.wgsl`.
@@ -689,7 +752,10 @@ fn ways(settings: &Settings) -> &'static [Stage] {
             "scatter_weight",
             "cone_around",
             "light_width",
-            "disc_power"
+            "disc_power",
+            "lamp_highlight",
+            "balance",
+            "scatter_density"
         )],
     }
 }

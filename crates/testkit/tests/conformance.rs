@@ -26,6 +26,8 @@ mod grids;
 mod images;
 #[path = "conformance/large.rs"]
 mod large;
+#[path = "conformance/lights.rs"]
+mod lights;
 
 const SIZE: [u32; 2] = [96, 72];
 

@@ -48,6 +48,7 @@ pub fn sphere_box_ground() -> Scene {
             shadow: Shadow::Soft { sharpness: 16.0 },
         }],
         sky: Sky::default(),
+        environment: None,
         camera: Camera::look_at(
             Vec3::new(2.5, 2.2, 4.0),
             Vec3::new(0.1, 0.6, 0.0),

@@ -2,6 +2,7 @@
 
 use crate::ao;
 use crate::job::Job;
+use crate::lamps;
 use crate::march::ORDINAL;
 use crate::order::{self, Sorting};
 use crate::shadow::shadows;
@@ -15,6 +16,7 @@ use zeroset_scene::film::Plane;
 use zeroset_scene::light::Light;
 use zeroset_scene::settings::{Occlusion, Shading};
 use zeroset_shade::air::{self, through};
+use zeroset_shade::lamp::Lamp;
 use zeroset_shade::light::{arrival, towards};
 use zeroset_shade::parameters;
 use zeroset_shade::sampling::{hit_seed, scramble};
@@ -65,9 +67,13 @@ pub(crate) fn identify<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) 
 pub(crate) fn light<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
     let scene = &sample.job.picture.scene;
     darken(q);
-    for light in scene.lights() {
+    for (number, light) in scene.lights().iter().enumerate() {
         if sample.solid.stop.is_set() {
             break;
+        }
+        if let Some(lamp) = Lamp::of(light) {
+            lamps::look(s, sample, &lamp, light.shadow, number as u32, q);
+            continue;
         }
         shadows(s, sample.solid, light, q);
         add_light(
@@ -79,8 +85,34 @@ pub(crate) fn light<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
             |_, point| towards(&light.source, point),
         );
     }
-    shade(s, sample, &SkyColours::of(scene.sky()), q);
+    match &sample.job.picture.environment {
+        Some(map) => {
+            lamps::surround(sample, map, q);
+            shade(s, sample, &DARK, q);
+        }
+        None => shade(s, sample, &SkyColours::of(scene.sky()), q),
+    }
 }
+
+/// No sky.
+pub(crate) const DARK: SkyColours<f32> = SkyColours {
+    top: Vec3 {
+        x: 0.0,
+        y: 0.0,
+        z: 0.0,
+    },
+    horizon: Vec3 {
+        x: 0.0,
+        y: 0.0,
+        z: 0.0,
+    },
+    bottom: Vec3 {
+        x: 0.0,
+        y: 0.0,
+        z: 0.0,
+    },
+    ambient: 0.0,
+};
 
 /// What the way leaves of light from hit number `i` back to where its ray began: through a clear body, or through fog.
 pub(crate) fn left(sample: &TileSample<'_>, q: &Scratch, i: usize) -> Vec3<f32> {
@@ -256,6 +288,8 @@ pub(crate) fn shade<S: Simd>(
 ) {
     let job = sample.job;
     let air = &job.picture.air;
+    // paths find it along the rays that meet nothing
+    let is_surrounded = job.picture.environment.is_some() && !job.is_path();
     s.vectorize(
         #[inline(always)]
         || {
@@ -278,6 +312,9 @@ pub(crate) fn shade<S: Simd>(
                 };
                 let followed = load(s, &hits.followed, i);
                 let mut c = colour(scene.settings().shading, sky, &what, &light, followed);
+                if is_surrounded {
+                    c = c + load3(s, &q.aim.light, i);
+                }
                 if air.is_foggy() {
                     // there is none in solids
                     let ray = hits.ray(s, i);

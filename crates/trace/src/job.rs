@@ -2,6 +2,7 @@
 
 use crate::closest::{Plan, closest};
 use crate::integrator::{Direct, Integrator, TileSample};
+use crate::lamps::shine_before;
 use crate::march::ORDINAL;
 use crate::normal::{normals, place};
 use crate::order::{self, PLACE};
@@ -26,7 +27,7 @@ use zeroset_scene::settings::{self, Antialias, Filter};
 use zeroset_shade::air::behind;
 use zeroset_shade::coat::Coat;
 use zeroset_shade::light::discs;
-use zeroset_shade::sampling::{point, scramble};
+use zeroset_shade::sampling::{LENS, decided, hit_seed, point, scramble};
 use zeroset_shade::sky::SkyColours;
 use zeroset_shade::view::View;
 
@@ -87,6 +88,11 @@ impl<'a> Job<'a> {
     /// Whether pixels are made of several samples.
     pub(crate) fn is_filtered(&self) -> bool {
         self.samples.is_some()
+    }
+
+    /// Whether rays begin all over a lens: one ray a pixel goes through its middle.
+    fn has_lens(&self) -> bool {
+        self.view.aperture > 0.0 && self.is_filtered()
     }
 
     /// Samples a pixel of the finished picture.
@@ -173,6 +179,7 @@ impl<'a> Job<'a> {
             q.jitter.iter_mut().for_each(|j| j.fill(0.5));
             return;
         }
+        let has_lens = self.has_lens();
         for i in 0..WIDTH * HEIGHT {
             let key = scramble(
                 area.x as u32 + order::X[i] as u32,
@@ -180,6 +187,15 @@ impl<'a> Job<'a> {
                 seed,
             );
             let place = point(index, key);
+            if has_lens {
+                let key = scramble(
+                    area.x as u32 + order::X[i] as u32,
+                    area.y as u32 + order::Y[i] as u32,
+                    hit_seed(seed, 0),
+                );
+                let [u, v] = decided(index, key, LENS);
+                (q.lens[0][i], q.lens[1][i]) = (u, v);
+            }
             for k in 0..2 {
                 q.jitter[k][i] = place[k];
                 q.planes.jitter[k][usize::from(PLACE[i])] = place[k];
@@ -197,7 +213,7 @@ impl<'a> Job<'a> {
         q: &mut Scratch,
     ) -> u64 {
         let settings = self.picture.scene.settings();
-        if index == self.taken.start {
+        if index == self.taken.start && !self.has_lens() {
             let spread = self.samples.is_some() || self.layers.is_some();
             let reach = if spread { 0.5 } else { 0.0 };
             cone::prepass(
@@ -212,7 +228,12 @@ impl<'a> Job<'a> {
         if self.plan.steps {
             q.steps.fill(0.0);
         }
-        primary::aim(s, solid.view, area, &q.jitter, &mut q.queue);
+        if self.has_lens() {
+            let places = [&q.jitter, &q.lens];
+            primary::aim_lens(s, solid, area, places, &mut q.queue);
+        } else {
+            primary::aim(s, solid.view, area, &q.jitter, &mut q.queue);
+        }
         match self.layers {
             Some(layers) => coverage::part(s, solid, area, layers, q),
             None => q.paths.begin(),
@@ -264,6 +285,7 @@ impl<'a> Job<'a> {
             },
         );
         integrator.integrate(s, sample, q);
+        shine_before(self, q);
         self.gather(s, sample.area, q);
         // the spans of the rays from the eye are those of the next sample too
         std::mem::swap(&mut q.queue.spans, &mut q.next);
@@ -310,7 +332,9 @@ impl<'a> Job<'a> {
             q.paths.meets(number);
             let [r, g, b] = &q.hits.colour;
             let state = q.paths.state(number);
-            add(&state, state.weight.times(v3(r[i], g[i], b[i])));
+            let ray = q.hits.rays.get(&q.hits.common, i);
+            let glow = self.glow(&ray, &state, q.hits.t[i]);
+            add(&state, state.weight.times(v3(r[i], g[i], b[i]) + glow));
             if state.is_from_eye {
                 coverage[usize::from(PLACE[state.pixel])] += state.weight.x;
             }
@@ -320,12 +344,11 @@ impl<'a> Job<'a> {
         for PathRay { ray, state, .. } in q.paths.missed() {
             // what lights the scene, or what is seen
             let share = if state.is_scattered { sky.ambient } else { 1.0 };
-            let air = &self.picture.air;
-            let mut seen =
-                behind(&sky, air, ray.origin.y, ray.direction, state.is_from_eye) * share;
+            let mut seen = self.sky_seen(ray, state.is_from_eye, state.density) * share;
             if state.sees_lights {
                 seen = seen + discs(scene.lights(), ray.direction);
             }
+            seen = seen + self.glow(ray, state, f32::INFINITY);
             add(state, state.weight.times(seen));
         }
         if self.layers.is_some() && self.wants_surface() {
@@ -390,6 +413,21 @@ impl<'a> Job<'a> {
     fn background<S: Simd>(&self, s: S, area: &Area, q: &mut Scratch) {
         let sky = SkyColours::of(self.picture.scene.sky());
         let air = &self.picture.air;
+        if self.has_lens() || self.picture.meets_lights() {
+            // a place of the picture shows many directions, or what has edges
+            for i in 0..q.queue.count {
+                let ray = q.queue.rays.get(&q.queue.common, i);
+                let eye = PathState::from_eye(i, 1.0);
+                let seen = self.sky_seen(&ray, true, None);
+                let seen = (seen + self.glow(&ray, &eye, f32::INFINITY)).array();
+                let at = usize::from(PLACE[i]);
+                for (column, x) in q.planes.colour.iter_mut().zip(seen) {
+                    column[at] = x;
+                }
+                q.planes.coverage[at] = 0.0;
+            }
+            return;
+        }
         // but for the edge of the sun
         let has_edge = air.cosine <= 1.0 && self.is_filtered();
         s.vectorize(

@@ -36,6 +36,7 @@ mod coverage;
 mod integrator;
 mod isolate;
 mod job;
+mod lamps;
 mod march;
 mod marcher;
 mod normal;

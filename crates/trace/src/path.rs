@@ -4,7 +4,8 @@
 //! finds them: there they are discs, which rays may meet that leave the body.
 
 use crate::ao;
-use crate::integrator::{Integrator, TileSample, add_light, darken, left, lose, shade};
+use crate::integrator::{DARK, Integrator, TileSample, add_light, darken, left, lose, shade};
+use crate::lamps;
 use crate::march::ORDINAL;
 use crate::order;
 use crate::paths::PathState;
@@ -20,9 +21,9 @@ use zeroset_number::{Lanes, Vec3, v3};
 use zeroset_scene::light::{Light, Source};
 use zeroset_scene::settings::{Occlusion, Shadow};
 use zeroset_shade::bsdf::{DECISIONS, LIKELIEST, SURE, scatter};
+use zeroset_shade::lamp::{Lamp, likelihood};
 use zeroset_shade::light::{towards, width};
 use zeroset_shade::sampling::{cone_direction, decided, hit_seed, scramble};
-use zeroset_shade::sky::SkyColours;
 
 /// All ways of light, one of many at each surface.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +42,8 @@ pub(crate) struct BounceColumns {
     weight: [Box<Sheet>; 3],
     lobe: Box<Sheet>,
     through: Box<Sheet>,
+    /// How likely each of the two opaque lobes was to choose the direction.
+    density: [Box<Sheet>; 2],
 }
 
 impl BounceColumns {
@@ -53,6 +56,7 @@ impl BounceColumns {
             weight: sheet3(),
             lobe: Sheet::boxed(),
             through: Sheet::boxed(),
+            density: [Sheet::boxed(), Sheet::boxed()],
         }
     }
 }
@@ -68,16 +72,16 @@ impl Integrator for PathTracer {
             if sample.solid.stop.is_set() {
                 return;
             }
-            look(s, sample, light, number as u32, q);
+            match Lamp::of(light) {
+                Some(lamp) => lamps::look(s, sample, &lamp, light.shadow, number as u32, q),
+                None => look(s, sample, light, number as u32, q),
+            }
+        }
+        if let Some(map) = &sample.job.picture.environment {
+            lamps::look_around(s, sample, map, q);
         }
         // the sky comes along the rays that meet nothing
-        let dark = SkyColours {
-            top: v3(0.0, 0.0, 0.0),
-            horizon: v3(0.0, 0.0, 0.0),
-            bottom: v3(0.0, 0.0, 0.0),
-            ambient: 0.0,
-        };
-        shade(s, sample, &dark, q);
+        shade(s, sample, &DARK, q);
         self.go_on(s, sample, q);
         for i in 0..q.hits.count {
             lose(sample, q, i);
@@ -86,21 +90,35 @@ impl Integrator for PathTracer {
 }
 
 /// Two random numbers for a decision at hit number `i`.
-fn random(sample: &TileSample<'_>, q: &Scratch, i: usize, decision: u32) -> [f32; 2] {
+pub(crate) fn random(sample: &TileSample<'_>, q: &Scratch, i: usize, decision: u32) -> [f32; 2] {
     let state = q.paths.state((q.hits.word[i] & ORDINAL) as usize);
+    let surfaces = state.bounces + state.reflections + state.refractions;
+    draw(sample, &state, surfaces * DECISIONS + decision)
+}
+
+/// Two random numbers for a decision of a way of light.
+pub(crate) fn draw(sample: &TileSample<'_>, state: &PathState, decision: u32) -> [f32; 2] {
     let seed = sample.job.picture.scene.settings().seed;
     let (x, y) = (
         sample.area.x as u32 + order::X[state.pixel] as u32,
         sample.area.y as u32 + order::Y[state.pixel] as u32,
     );
     let key = scramble(x, y, hit_seed(seed, 0));
-    decided(sample.index, key, state.bounces * DECISIONS + decision)
+    decided(sample.index, key, decision)
 }
 
 /// Towards places that were chosen before.
-struct AimedLight<'a> {
-    source: &'a Source,
-    towards: &'a [Vec<f32>; 3],
+pub(crate) struct AimedLight<'a> {
+    pub(crate) towards: &'a [Vec<f32>; 3],
+    pub(crate) distance: Distance<'a>,
+}
+
+/// How far such places are.
+pub(crate) enum Distance<'a> {
+    /// As far as a light.
+    Of(&'a Source),
+    /// As far as is known for each.
+    Stored(&'a [f32]),
 }
 
 impl AimedLight<'_> {
@@ -108,7 +126,10 @@ impl AimedLight<'_> {
     fn at<S: Simd>(&self, at: usize, origin: Vec3<Lanes<S>>) -> (Vec3<Lanes<S>>, Lanes<S>) {
         let s = origin.x.0.token();
         let [x, y, z] = self.towards;
-        let (_, distance) = towards(self.source, origin);
+        let distance = match self.distance {
+            Distance::Of(source) => towards(source, origin).1,
+            Distance::Stored(distance) => load(s, distance, at),
+        };
         (v3(load(s, x, at), load(s, y, at), load(s, z, at)), distance)
     }
 }
@@ -146,8 +167,8 @@ fn look<S: Simd>(s: S, sample: &TileSample<'_>, light: &Light, number: u32, q: &
         }
     }
     let aim = AimedLight {
-        source: &light.source,
         towards: &directions,
+        distance: Distance::Of(&light.source),
     };
     let all = 0..q.hits.count;
     q.counts.shadow += match light.shadow {
@@ -188,6 +209,7 @@ impl PathTracer {
                 column[i] = x;
             }
         }
+        let meets_lights = sample.job.picture.meets_lights();
         s.vectorize(
             #[inline(always)]
             || {
@@ -198,10 +220,11 @@ impl PathTracer {
                     let inside = LaneMask(side.simd_gt(S::u32s::splat(s, 0)));
                     let tint = Vec3::select(inside, splat3(s, [1.0; 3]), what.albedo);
                     let random = load3(s, &bounce.random, i);
+                    let (n, d) = (load3(s, &hits.shown, i), hits.ray(s, i).direction);
                     let way = scatter(
                         &what,
-                        load3(s, &hits.shown, i),
-                        hits.ray(s, i).direction,
+                        n,
+                        d,
                         load(s, &bounce.ior, i),
                         tint,
                         [random.x, random.y, random.z],
@@ -210,6 +233,12 @@ impl PathTracer {
                     store3(way.weight, &mut bounce.weight, i);
                     store(way.lobe, &mut bounce.lobe, i);
                     store(way.through, &mut bounce.through, i);
+                    if meets_lights {
+                        let found = likelihood(&what, n, d, way.direction);
+                        for (column, x) in bounce.density.iter_mut().zip(found) {
+                            store(x, column, i);
+                        }
+                    }
                 }
             },
         );
@@ -256,6 +285,10 @@ impl PathTracer {
             (false, true) => Some(hits.first[i]),
             (false, false) => None,
         };
+        // from inside a clear body no light is looked for, nor behind one
+        let looked = !(inside && state.medium.is_some()) && bounce.lobe[i] < 1.5;
+        let density = (looked && sample.job.picture.meets_lights())
+            .then(|| bounce.density[usize::from(bounce.lobe[i] > 0.5)][i]);
         let ray = hits.rays.get(&hits.common, i);
         let side = if through { -1.0 } else { 1.0 };
         // what bumps send behind the surface that they are on is lost
@@ -277,6 +310,7 @@ impl PathTracer {
                 bounces: state.bounces + 1,
                 is_scattered: state.is_scattered || bounce.lobe[i] < 0.5,
                 sees_lights: bounce.lobe[i] > 1.5,
+                density,
                 ..state
             },
         ))

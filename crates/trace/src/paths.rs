@@ -33,6 +33,8 @@ pub(crate) struct PathState {
     pub(crate) is_scattered: bool,
     /// Whether the last surface was that of a clear body, behind which no ray looks for lights.
     pub(crate) sees_lights: bool,
+    /// The density over directions with which the last surface chose the ray's, where lights are looked for from there too.
+    pub(crate) density: Option<f32>,
     /// Whether the ray comes from the eye: it shows a part of its pixel.
     pub(crate) is_from_eye: bool,
 }
@@ -167,6 +169,7 @@ impl PathState {
             bounces: 0,
             is_scattered: false,
             sees_lights: false,
+            density: None,
             is_from_eye: true,
         }
     }

@@ -19,12 +19,15 @@ use zeroset_scene::accumulator::{self, Accumulator, Sum};
 use zeroset_scene::camera::Camera;
 use zeroset_scene::film::{Film, Plane, SUMS};
 use zeroset_scene::material::{Material, Pattern};
+use zeroset_scene::motion::Moving;
 use zeroset_scene::progressive::{MOST, SampleMap};
 use zeroset_scene::render::{Evaluations, Observer, Prepared, RenderError, Renderer, Statistics};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Occlusion, Settings};
 use zeroset_shade::air::Air;
 use zeroset_shade::coat::{Coat, compiled};
+use zeroset_shade::environment::EnvironmentMap;
+use zeroset_shade::lamp::{self, Lamp};
 use zeroset_shade::skin::has_skins;
 use zeroset_shade::surface::BLURRED;
 use zeroset_shade::view::Region;
@@ -111,7 +114,8 @@ impl Renderer for CpuRenderer {
     }
 
     fn prepare(&self, scene: Arc<Scene>) -> Result<Box<dyn Prepared>, RenderError> {
-        Ok(Box::new(self.prepare_scene(scene)?))
+        let prepared = self.prepare_scene(Arc::clone(&scene))?;
+        Ok(Box::new(Moving::new(scene, Box::new(prepared))))
     }
 }
 
@@ -147,6 +151,10 @@ pub struct PreparedScene {
     pub(crate) object: Option<u16>,
     /// Fog, and the sun before the sky.
     pub(crate) air: Air<f32>,
+    /// Light from all around, by an image.
+    pub(crate) environment: Option<Arc<EnvironmentMap>>,
+    /// The lamps that rays may meet.
+    pub(crate) lamps: Vec<Lamp<f32>>,
     /// Whether rays go on from any material.
     pub(crate) goes_on: bool,
     /// The materials as they lie on things, by their numbers as marks.
@@ -167,7 +175,14 @@ pub struct PreparedScene {
 impl PreparedScene {
     fn new(renderer: CpuRenderer, scene: Arc<Scene>) -> Result<PreparedScene, RenderError> {
         let (program, region) = compiled(&scene, &renderer.limits)?;
-        Ok(PreparedScene::of(renderer, scene, program, region))
+        let environment = EnvironmentMap::renewed(None, &scene);
+        Ok(PreparedScene::of(
+            renderer,
+            scene,
+            program,
+            region,
+            environment,
+        ))
     }
 
     fn of(
@@ -175,6 +190,7 @@ impl PreparedScene {
         scene: Arc<Scene>,
         program: Program,
         region: Region,
+        environment: Option<Arc<EnvironmentMap>>,
     ) -> PreparedScene {
         let (mut materials, mut objects) = (BTreeSet::new(), BTreeSet::new());
         for instruction in &program.structure().marks.instructions {
@@ -212,6 +228,8 @@ impl PreparedScene {
             has_bumps: scene.materials().iter().any(|m| m.bump.is_some()),
             coats: Coat::all(&scene, &program),
             air: Air::of(scene.sky(), scene.lights()),
+            lamps: lamp::visible(scene.lights()),
+            environment,
             renderer,
             skins: has_skins(&scene, &program),
             scene,
@@ -226,6 +244,11 @@ impl PreparedScene {
             method_of,
             spare: Mutex::default(),
         }
+    }
+
+    /// Whether rays may meet lights that are looked for too.
+    pub(crate) fn meets_lights(&self) -> bool {
+        !self.lamps.is_empty() || self.environment.is_some()
     }
 
     /// Memory for a tile.
@@ -330,7 +353,9 @@ impl Prepared for PreparedScene {
         };
         let spare = std::mem::take(&mut self.spare);
         let fits = program.structure() == self.program.structure();
-        *self = PreparedScene::of(self.renderer.clone(), scene, program, region);
+        let environment = EnvironmentMap::renewed(self.environment.as_ref(), &scene);
+        let renderer = self.renderer.clone();
+        *self = PreparedScene::of(renderer, scene, program, region, environment);
         if fits {
             self.spare = spare;
         }

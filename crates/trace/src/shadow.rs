@@ -106,7 +106,7 @@ impl<S: Simd> Aim<S> for ToLight<'_> {
     fn common(&self) -> Option<[f32; 3]> {
         match self.source {
             Source::Directional { direction } => Some((-*direction).to_array()),
-            Source::Point { .. } => None,
+            _ => None,
         }
     }
     #[inline(always)]

@@ -2,6 +2,7 @@
 
 use crate::ao::SharedOcclusion;
 use crate::coverage::Coverage;
+use crate::lamps::AimColumns;
 use crate::march::ITERATIONS;
 use crate::order::Sorting;
 use crate::path::BounceColumns;
@@ -273,6 +274,8 @@ pub(crate) struct Scratch {
     pub(crate) work: Workspace,
     /// Where in its pixel each ray goes through.
     pub(crate) jitter: [Box<Sheet>; 2],
+    /// Where on the lens each ray begins, as a place of the unit square.
+    pub(crate) lens: [Box<Sheet>; 2],
     /// Cells, in the end the rays of pixels.
     pub(crate) queue: Queue,
     /// The spans of the cells that are larger by one size.
@@ -302,6 +305,8 @@ pub(crate) struct Scratch {
     pub(crate) scramble: [Vec<u32>; 2],
     /// Where rays towards lights go from the hits.
     pub(crate) towards: [Vec<f32>; 3],
+    /// Where lights with an extent are looked for.
+    pub(crate) aim: AimColumns,
     /// Where rays go on from them.
     pub(crate) bounce: BounceColumns,
     /// Sines of the clearances of the occlusion's cones.
@@ -320,6 +325,7 @@ impl Scratch {
         Scratch {
             work: Workspace::new(program.values(), program.marks()),
             jitter: [Sheet::boxed(), Sheet::boxed()],
+            lens: [Sheet::boxed(), Sheet::boxed()],
             queue: Queue::new(),
             parents: RaySpans::new(),
             next: RaySpans::new(),
@@ -393,6 +399,7 @@ impl Scratch {
             sorting: Sorting::new(),
             scramble: [vec![0; TILE_RAYS + SLACK], vec![0; TILE_RAYS + SLACK]],
             towards: std::array::from_fn(|_| vec![0.0; TILE_RAYS + SLACK]),
+            aim: AimColumns::new(),
             bounce: BounceColumns::new(),
             clearance: std::array::from_fn(|_| Sheet::boxed()),
             planes: Planes::new(),

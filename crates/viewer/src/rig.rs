@@ -2,6 +2,7 @@
 
 use glam::{DMat3, DQuat, DVec3, Vec3};
 use std::f64::consts::FRAC_PI_2;
+use zeroset_catalogue::LARGE;
 use zeroset_catalogue::bounds::Aabb;
 use zeroset_language::framing::fit;
 use zeroset_scene::camera::{Camera, Lens};
@@ -54,6 +55,10 @@ pub struct Rig {
     lens: Lens,
     near: f32,
     far: f32,
+    /// Radius of the lens.
+    aperture: f32,
+    /// How far before it what is sharp lies.
+    focus: f32,
     /// From the eye to the point that it orbits.
     distance: f64,
     /// What orbits turn around.
@@ -85,6 +90,8 @@ impl Rig {
             lens: camera.lens,
             near: camera.near,
             far: camera.far,
+            aperture: camera.aperture,
+            focus: camera.focus,
             distance,
             up,
         }
@@ -98,12 +105,34 @@ impl Rig {
             lens: self.lens,
             near: self.near,
             far: self.far,
+            aperture: self.aperture,
+            focus: self.focus,
         }
     }
 
     /// Sees as far as a camera does.
     pub fn see_as_far_as(&mut self, camera: &Camera) {
         self.far = camera.far;
+    }
+
+    /// Radius of the lens, and how far before it what is sharp lies.
+    pub fn lens(&self) -> [f32; 2] {
+        [self.aperture, self.focus]
+    }
+
+    /// Another radius of the lens. One that had none is focused on what it orbits.
+    pub fn set_aperture(&mut self, aperture: f32) {
+        self.aperture = aperture.clamp(0.0, LARGE as f32);
+        if self.aperture == 0.0 {
+            self.focus = 0.0;
+        } else if self.focus == 0.0 {
+            self.focus_at(self.distance as f32);
+        }
+    }
+
+    /// Focuses so far before the camera.
+    pub fn focus_at(&mut self, focus: f32) {
+        self.focus = focus.clamp(CLOSEST as f32, LARGE as f32);
     }
 
     /// The point that it orbits.
@@ -242,6 +271,9 @@ impl Rig {
         }
         if camera.near != 0.0 {
             text += &format!(", near = {}", camera.near);
+        }
+        if camera.aperture > 0.0 {
+            text += &format!(", aperture = {}, focus = {}", camera.aperture, camera.focus);
         }
         // what is automatic depends on where the camera stands
         text + &format!(", far = {})", camera.far)

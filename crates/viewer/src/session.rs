@@ -98,6 +98,8 @@ impl Session {
             lens,
             near: 0.0,
             far: 1000.0,
+            aperture: 0.0,
+            focus: 0.0,
         };
         Session {
             path,

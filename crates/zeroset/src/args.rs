@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use zeroset_language::limits::Limits;
 use zeroset_scene::film::Plane;
 use zeroset_scene::methods::Choice;
-use zeroset_scene::scene::Scene;
+use zeroset_scene::scene::{Scene, SceneParts};
 use zeroset_scene::settings::{
     Antialias, Integrator, March, Normals, Occlusion, Shading, Shadow, Tone,
 };
@@ -218,7 +218,10 @@ impl Methods {
     /// # Errors
     /// A method takes more samples than are allowed.
     pub(crate) fn apply(&self, scene: &mut Scene, limits: &Limits) -> Result<(), Failure> {
-        let mut parts = scene.clone().into_parts();
+        scene.edit_moments(|parts| self.put(parts, limits))
+    }
+
+    fn put(&self, parts: &mut SceneParts, limits: &Limits) -> Result<(), Failure> {
         let settings = &mut parts.settings;
         put("march", self.march, &mut settings.march, limits)?;
         put("normals", self.normals, &mut settings.normals, limits)?;
@@ -240,7 +243,6 @@ impl Methods {
         for light in &mut parts.lights {
             put("shadow", self.shadow, &mut light.shadow, limits)?;
         }
-        *scene = parts.build()?;
         Ok(())
     }
 }

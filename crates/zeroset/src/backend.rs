@@ -161,7 +161,8 @@ impl ChosenRenderer {
         observer: &dyn Observer,
         restart: &(dyn Fn() + Sync),
     ) -> Result<Option<PartialPicture>, RenderError> {
-        if self.is_on_gpu() {
+        // neither a GPU nor a scene that moves keeps parts of a picture
+        if self.is_on_gpu() || !scene.moments().is_empty() {
             let (frame, used) = match self.render(scene, planes, observer, restart) {
                 Err(RenderError::Cancelled) => return Ok(None),
                 other => other?,

@@ -5,7 +5,7 @@ use super::valid;
 use super::{JsonStep, KEY, NAME, Problem, Read, VERSION, angle_name, is_angle, problem};
 use crate::assets::Assets;
 use crate::budget::LoadBudget;
-use crate::draft::{CameraDraft, Draft};
+use crate::draft::{CameraDraft, Draft, Focus};
 use crate::files::Reading;
 use crate::framing;
 use crate::images;
@@ -25,6 +25,7 @@ use zeroset_field::placement::Placement;
 use zeroset_field::repetition::{Polar, Repetition};
 use zeroset_field::sampled::Source as SampledSource;
 use zeroset_scene::colour;
+use zeroset_scene::environment::{Environment, Surroundings};
 use zeroset_scene::light::{Light, Sky};
 use zeroset_scene::material::Material;
 use zeroset_scene::scene::Object;
@@ -165,8 +166,8 @@ fn data<T: DeserializeOwned>(value: &Value) -> Read<T> {
 }
 
 /// Keys whose values are colours.
-const COLOURS: [&str; 7] = [
-    "colour", "colours", "emission", "radiance", "top", "horizon", "bottom",
+const COLOURS: [&str; 8] = [
+    "colour", "colours", "emission", "radiance", "top", "horizon", "bottom", "ground",
 ];
 
 /// Replaces colours that are texts by their linear numbers.
@@ -204,6 +205,7 @@ impl Reader {
             "materials",
             "lights",
             "sky",
+            "environment",
             "camera",
             "settings",
         ];
@@ -311,6 +313,15 @@ impl Reader {
             let settings: Settings = data(v)?;
             valid::settings(&settings, &limits)?;
             Ok(settings)
+        })?;
+        draft.environment = member(map, "environment", |v| {
+            let mut environment: Environment = data(v)?;
+            if let Surroundings::Image { image } = &mut environment.source {
+                let loaded = images::load(&mut draft.files, &image.path, &self.limits);
+                *image = loaded.map_err(|m| problem(m).at("path").at("image").at("source"))?;
+            }
+            valid::environment(&environment)?;
+            Ok(environment)
         })?;
         draft.view = member(map, "camera", camera)?;
         Ok(())
@@ -623,7 +634,7 @@ fn rigid(rows: &[[f64; 3]; 3]) -> Read<()> {
 /// A camera as far as it is stated.
 fn camera(value: &Value) -> Read<CameraDraft> {
     let names = [
-        "eye", "axes", "target", "up", "fov", "height", "near", "far",
+        "eye", "axes", "target", "up", "fov", "height", "near", "far", "aperture", "focus",
     ];
     let map = members(value, "a camera", &names)?;
     let point = |v: &Value| {
@@ -671,6 +682,9 @@ fn camera(value: &Value) -> Read<CameraDraft> {
         near: member(map, "near", single(0.0, f32::MAX))?.unwrap_or(default.near),
         // where a file states none it follows from the bounds, which may be of any size
         far: member(map, "far", single(0.0, f32::MAX))?,
+        aperture: member(map, "aperture", single(0.0, LARGE as f32))?.unwrap_or_default(),
+        focus: member(map, "focus", single(SMALL as f32, valid::FAR))?.map(Focus::Distance),
+        ..default
     };
     // what cannot be framed is refused here, where its place is known
     framing::camera(&view, std::iter::empty(), [1, 1]).map_err(problem)?;

@@ -3,12 +3,13 @@
 use super::{JsonStep, Problem, Read, problem};
 use crate::draft::check_size;
 use crate::limits::Limits;
+use zeroset_scene::environment::Environment;
 use zeroset_scene::light::{Light, Sky};
 use zeroset_scene::material::Material;
 use zeroset_scene::scene::SceneParts;
 use zeroset_scene::settings::{Occlusion, Settings};
 use zeroset_scene::valid::{self, Checked};
-pub(super) use zeroset_scene::valid::{HEIGHT, UPRIGHT};
+pub(super) use zeroset_scene::valid::{FAR, HEIGHT, UPRIGHT};
 
 /// The error of a scene as one of a file.
 fn read(check: Checked) -> Read<()> {
@@ -58,6 +59,10 @@ pub(super) fn light(light: &Light) -> Read<()> {
 
 pub(super) fn sky(sky: &Sky) -> Read<()> {
     read(valid::sky(sky))
+}
+
+pub(super) fn environment(environment: &Environment) -> Read<()> {
+    read(valid::environment(environment))
 }
 
 pub(super) fn occlusion(occlusion: &Occlusion, limits: &Limits) -> Read<()> {

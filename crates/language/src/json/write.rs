@@ -63,6 +63,9 @@ pub fn expand(scene: &Scene) -> Result<Value, ExpandError> {
     out.insert("materials".into(), plain(scene.materials()));
     out.insert("lights".into(), plain(scene.lights()));
     out.insert("sky".into(), plain(scene.sky()));
+    if let Some(environment) = scene.environment() {
+        out.insert("environment".into(), plain(environment));
+    }
     out.insert("camera".into(), camera(scene.camera()));
     out.insert("settings".into(), plain(scene.settings()));
     let out = Value::Object(out);
@@ -109,6 +112,10 @@ fn camera(camera: &Camera) -> Value {
     };
     out.insert("near".into(), json!(camera.near));
     out.insert("far".into(), json!(camera.far));
+    if camera.aperture > 0.0 {
+        out.insert("aperture".into(), json!(camera.aperture));
+        out.insert("focus".into(), json!(camera.focus));
+    }
     Value::Object(out)
 }
 

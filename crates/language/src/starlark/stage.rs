@@ -2,15 +2,19 @@
 
 use super::mistake::{Run, mistake};
 use super::native::{Call, Given, Native, Slot, slot};
+use super::spoken;
 use super::value::{Thing, Value};
-use crate::draft::{CameraDraft, FOV, unit};
+use crate::draft::{CameraDraft, FOV, Focus, MOMENTS, unit};
 use crate::framing::axes_of;
+use crate::images;
 use glam::{DMat3, DQuat, DVec3, EulerRot, Vec3};
 use zeroset_catalogue::{Dimension, LARGE, SMALL};
+use zeroset_scene::environment::{Environment, STRENGTH as STRONGEST, Surroundings, TURBIDITY};
 use zeroset_scene::light::{Fog, Light, Sky, Source};
 use zeroset_scene::material::Material;
-use zeroset_scene::scene::Object;
-use zeroset_scene::valid::LIGHTS;
+use zeroset_scene::scene::{self, Object};
+use zeroset_scene::settings::Shadow;
+use zeroset_scene::valid::{LAMP, LIGHTS};
 
 const GROUP: &str = "Stage";
 
@@ -27,6 +31,18 @@ const SHADOW: Slot = slot(
     "soft_closest()",
     "How its shadow is found: a method of the group Shadows, or none().",
 );
+
+const NEAR_STRENGTH: Slot = slot(
+    "strength",
+    "10",
+    "What a white surface shows that faces it at a distance of 1, if all of it were at its middle.",
+);
+const LAMP_SHADOW: Slot = slot(
+    "shadow",
+    "hard()",
+    "none() for none; all others are as soft as the lamp is wide, by one ray to it from each surface.",
+);
+const VISIBLE: Slot = slot("visible", "True", "Whether it is seen, in mirrors too.");
 
 /// The functions.
 pub(crate) const ALL: &[Native] = &[
@@ -73,7 +89,27 @@ pub(crate) const ALL: &[Native] = &[
                 "orthographic(height) for parallel rays."
             ),
             slot("near", "0", "Where rays begin, scene units."),
-            slot("far", "1000 or more", "Where rays end, scene units.")
+            slot("far", "1000 or more", "Where rays end, scene units."),
+            slot(
+                "aperture",
+                "0",
+                "Radius of the lens, scene units: what is out of focus is blurred, with several rays a pixel."
+            ),
+            slot(
+                "focus",
+                "the target",
+                "What is sharp then: a distance along the way it looks, or a point (x, y, z)."
+            ),
+            slot(
+                "shutter",
+                "0",
+                "Seconds of time() that the shutter is open, from the picture's own time on: what moves is blurred."
+            ),
+            slot(
+                "moments",
+                "32",
+                "Moments of that time, 1 to 1024: each ray of a pixel sees one of them."
+            )
         ],
         camera
     ),
@@ -120,6 +156,81 @@ pub(crate) const ALL: &[Native] = &[
         }
     ),
     function!(
+        "rectangle_light",
+        "A lamp that is a rectangle, such as a window or a soft box. It shines from its front and is no body.",
+        [
+            slot("position", "", "Its middle, (x, y, z)."),
+            slot("target", "None", "What it faces, a point."),
+            slot(
+                "direction",
+                "(0, -1, 0)",
+                "The way it faces, in place of a target."
+            ),
+            slot(
+                "size",
+                "1",
+                "Width and height, or one for both, scene units."
+            ),
+            slot("up", "\"y\"", "Which way its height goes."),
+            COLOR,
+            NEAR_STRENGTH,
+            LAMP_SHADOW,
+            VISIBLE
+        ],
+        rectangle_light
+    ),
+    function!(
+        "disc_light",
+        "A lamp that is a disc. It shines from its front and is no body.",
+        [
+            slot("position", "", "Its middle, (x, y, z)."),
+            slot("target", "None", "What it faces, a point."),
+            slot(
+                "direction",
+                "(0, -1, 0)",
+                "The way it faces, in place of a target."
+            ),
+            slot("radius", "0.5", "Its radius, scene units."),
+            COLOR,
+            NEAR_STRENGTH,
+            LAMP_SHADOW,
+            VISIBLE
+        ],
+        |c| {
+            let given = c.need("position")?;
+            let position = c.point("position", given)?;
+            let direction = facing(c, position)?.as_vec3();
+            let source = Source::Disc {
+                position: position.as_vec3(),
+                direction,
+                radius: radius(c)?,
+                visible: c.flag_or("visible", true)?,
+            };
+            light(c, source)
+        }
+    ),
+    function!(
+        "sphere_light",
+        "A lamp that is a sphere. It shines all around and is no body.",
+        [
+            slot("position", "", "Its middle, (x, y, z)."),
+            slot("radius", "0.5", "Its radius, scene units."),
+            COLOR,
+            NEAR_STRENGTH,
+            LAMP_SHADOW,
+            VISIBLE
+        ],
+        |c| {
+            let given = c.need("position")?;
+            let source = Source::Sphere {
+                position: c.point("position", given)?.as_vec3(),
+                radius: radius(c)?,
+                visible: c.flag_or("visible", true)?,
+            };
+            light(c, source)
+        }
+    ),
+    function!(
         "sky",
         "What is behind everything, and lights it from everywhere.",
         [
@@ -136,6 +247,31 @@ pub(crate) const ALL: &[Native] = &[
                 "sun",
                 "0",
                 "Degrees across of the disc of the first sun(), 0 to 180; the real one has 0.53."
+            ),
+            slot(
+                "image",
+                "None",
+                "An equirectangular image of all directions in place of colours: .hdr, .png or .jpg in the scene's folder."
+            ),
+            slot(
+                "turbidity",
+                "None",
+                "The clear sky of a day in place of colours, around the first sun(): 1.7 to 10, 2 clear, 10 hazy."
+            ),
+            slot(
+                "ground",
+                "\"#6b6660\"",
+                "Colour of the ground below such a sky."
+            ),
+            slot(
+                "strength",
+                "1",
+                "What the light of an image or of such a sky is multiplied by."
+            ),
+            slot(
+                "turn",
+                "0",
+                "Degrees that an image is turned about the vertical; without, its middle is seen along -z."
             )
         ],
         sky
@@ -285,6 +421,10 @@ fn camera(c: &mut Call<'_, '_>) -> Run<Value> {
         height,
         near: c.number_or("near", 0.0, 0.0, 1e9)?,
         far,
+        aperture: c.number_or("aperture", 0.0, 0.0, LARGE)?,
+        focus: c.get("focus").map(|g| focus(c, g)).transpose()?,
+        shutter: c.number_or("shutter", 0.0, 0.0, LARGE)?,
+        moments: c.count_or("moments", MOMENTS, 1, scene::MOMENTS)?,
     };
     let names = [
         ("turn", view.axes.is_some()),
@@ -318,6 +458,14 @@ fn both(view: &CameraDraft) -> bool {
     view.eye.is_some() && view.target.is_some()
 }
 
+/// A distance, or a point.
+fn focus(c: &Call<'_, '_>, given: Given) -> Run<Focus> {
+    if c.machine.store.items(given.value).is_some() {
+        return c.point("focus", given).map(Focus::Point);
+    }
+    c.ranged("focus", given, SMALL, LARGE).map(Focus::Distance)
+}
+
 /// Columns right, up, backwards from degrees about x, y and z, or from a quaternion.
 fn orientation(c: &Call<'_, '_>, given: Given) -> Run<DMat3> {
     if c.machine
@@ -343,14 +491,88 @@ fn orientation(c: &Call<'_, '_>, given: Given) -> Run<DMat3> {
     ))
 }
 
-fn light(c: &mut Call<'_, '_>, source: Source) -> Run<Value> {
-    let strength = if matches!(source, Source::Point { .. }) {
-        10.0
-    } else {
-        1.0
+/// The radius of a lamp.
+fn radius(c: &Call<'_, '_>) -> Run<f32> {
+    let (least, most) = LAMP;
+    let radius = c.number_or("radius", 0.5, f64::from(least), f64::from(most))?;
+    Ok(radius as f32)
+}
+
+/// The way a lamp faces that stands at a place.
+fn facing(c: &Call<'_, '_>, position: DVec3) -> Run<DVec3> {
+    let target = match c
+        .get("target")
+        .filter(|given| !matches!(given.value, Value::None))
+    {
+        Some(given) => given,
+        None => {
+            let direction = c.get("direction").map(|g| c.direction("direction", g));
+            return Ok(unit(direction.unwrap_or(Ok([0.0, -1.0, 0.0]))?));
+        }
     };
+    if c.get("direction").is_some() {
+        let m = mistake("`target` and `direction` both say which way the lamp faces");
+        return Err(m.help("leave one of them out").at(target.place));
+    }
+    let to = c.point("target", target)? - position;
+    if to.length_squared() > 0.0 {
+        return Ok(unit(to.to_array()));
+    }
+    Err(
+        mistake("the lamp stands where it faces: `position` and `target` must differ")
+            .at(target.place),
+    )
+}
+
+fn rectangle_light(c: &mut Call<'_, '_>) -> Run<Value> {
+    let given = c.need("position")?;
+    let position = c.point("position", given)?;
+    let front = facing(c, position)?;
+    let size: [f64; 2] = match c.get("size") {
+        None => [1.0; 2],
+        Some(given) if c.machine.store.items(given.value).is_none() => {
+            [c.number("size", given)?; 2]
+        }
+        Some(given) => c.numbers("size", given)?,
+    };
+    let (least, most) = LAMP;
+    for side in size {
+        let half = 0.5 * side;
+        if !(f64::from(least) <= half && half <= f64::from(most)) {
+            let m = mistake(format!(
+                "`size` of rectangle_light() is {}, allowed is {} to {}",
+                spoken(side),
+                spoken(2.0 * f64::from(least)),
+                spoken(2.0 * f64::from(most))
+            ));
+            return Err(match c.get("size") {
+                Some(given) => m.at(given.place),
+                None => m,
+            });
+        }
+    }
+    let up = c.get("up").map(|g| c.direction("up", g).map(unit));
+    // seen by who looks at its front, `right` goes to the right: `right x up` is the front
+    let axes = axes_of(front, up.unwrap_or(Ok(DVec3::Y))?);
+    let Some(axes) = axes else {
+        return Err(mistake("`direction` of rectangle_light() points nowhere"));
+    };
+    let source = Source::Rectangle {
+        position: position.as_vec3(),
+        right: (axes.x_axis * (0.5 * size[0])).as_vec3(),
+        up: (axes.y_axis * (0.5 * size[1])).as_vec3(),
+        visible: c.flag_or("visible", true)?,
+    };
+    light(c, source)
+}
+
+fn light(c: &mut Call<'_, '_>, source: Source) -> Run<Value> {
+    let strength = if source.is_near() { 10.0 } else { 1.0 };
     let strength = c.number_or("strength", strength, 0.0, 1e6)? as f32;
-    let shadow = c.method(Thing::shadow)?;
+    let shadow = match c.get("shadow") {
+        None if source.is_lamp() => Shadow::Hard,
+        _ => c.method(Thing::shadow)?,
+    };
     let radiance = c.colour_or("color", "white")? * strength;
     let lights = c.machine.draft.lights.get_or_insert_default();
     if lights.len() >= LIGHTS {
@@ -366,6 +588,17 @@ fn light(c: &mut Call<'_, '_>, source: Source) -> Run<Value> {
 
 fn sky(c: &mut Call<'_, '_>) -> Run<Value> {
     c.once("the sky")?;
+    let environment = environment(c)?;
+    let usual = match environment {
+        Some(_) => 1.0,
+        None => f64::from(Sky::default().ambient),
+    };
+    let coloured = ["color", "top", "horizon", "bottom"].map(|name| c.get(name));
+    if let (Some(_), Some(given)) = (&environment, coloured.into_iter().flatten().next()) {
+        let m = mistake("an image or a clear sky has its own colours").at(given.place);
+        return Err(m.help("leave the colours of sky() out, or `image` and `turbidity`"));
+    }
+    c.machine.draft.environment = environment;
     let default = Sky::default();
     let colour = |name| c.get(name).map(|g| c.colour(name, g)).transpose();
     let (one, top) = (colour("color")?, colour("top")?);
@@ -382,12 +615,59 @@ fn sky(c: &mut Call<'_, '_>) -> Run<Value> {
             .or(one)
             .or(horizon.map(|h| h / 3.0))
             .unwrap_or(default.bottom),
-        ambient: c.number_or("ambient", f64::from(default.ambient), 0.0, 10.0)? as f32,
+        ambient: c.number_or("ambient", usual, 0.0, 10.0)? as f32,
         sun: c.number_or("sun", 0.0, 0.0, 180.0)?.to_radians() as f32,
         fog: None,
     };
     c.machine.draft.sky = Some(sky);
     Ok(Value::None)
+}
+
+/// What sky() says of an image or of a clear sky.
+fn environment(c: &mut Call<'_, '_>) -> Run<Option<Environment>> {
+    let stated = |name| {
+        c.get(name)
+            .filter(|given| !matches!(given.value, Value::None))
+    };
+    let source = match (stated("image"), stated("turbidity")) {
+        (None, None) => {
+            let only = ["ground", "strength", "turn"].into_iter().find_map(|name| {
+                let given = c.get(name)?;
+                Some((name, given))
+            });
+            let Some((name, given)) = only else {
+                return Ok(None);
+            };
+            let m = mistake(format!(
+                "`{name}` of sky() is of an image or of a clear sky"
+            ));
+            return Err(m.at(given.place).help("state `image` or `turbidity` too"));
+        }
+        (Some(_), Some(given)) => {
+            let m = mistake("`image` and `turbidity` both say what the sky looks like");
+            return Err(m.help("leave one of them out").at(given.place));
+        }
+        (Some(given), None) => {
+            let name = c.text("image", given)?.to_string();
+            let limits = c.machine.limits;
+            let image = images::load(&mut c.machine.draft.files, &name, &limits)
+                .map_err(|m| mistake(m).at(given.place))?;
+            Surroundings::Image { image }
+        }
+        (None, Some(given)) => {
+            let (least, most) = TURBIDITY;
+            let turbidity = c.ranged("turbidity", given, f64::from(least), f64::from(most))?;
+            Surroundings::Clear {
+                turbidity: turbidity as f32,
+                ground: c.colour_or("ground", "#6b6660")?,
+            }
+        }
+    };
+    Ok(Some(Environment {
+        source,
+        strength: c.number_or("strength", 1.0, 0.0, f64::from(STRONGEST))? as f32,
+        turn: c.number_or("turn", 0.0, -3600.0, 3600.0)?.to_radians() as f32,
+    }))
 }
 
 fn fog(c: &mut Call<'_, '_>) -> Run<Value> {

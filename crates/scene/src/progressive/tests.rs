@@ -96,6 +96,8 @@ fn camera() -> Camera {
         lens: crate::camera::Lens::Pinhole { fov: 1.0 },
         near: 0.0,
         far: 1.0,
+        aperture: 0.0,
+        focus: 0.0,
     }
 }
 

@@ -60,6 +60,9 @@ pub enum Fault {
         /// What was given.
         value: Vec3,
     },
+    /// Sides of a rectangle that are not at right angles.
+    #[error("`right` and `up` must be at right angles to each other")]
+    RightAngles,
     /// Axes of a camera that are not orthonormal.
     #[error("the axes must have length 1 and be at right angles to each other")]
     Axes,

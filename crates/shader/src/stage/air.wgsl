@@ -19,7 +19,7 @@ fn haze(ray: Ray, t: f32) -> f32 {
 
 /// The sky along a ray, with the disc of the sun where it is looked at.
 fn sky_along(ray: Ray, looks: bool) -> vec3f {
-    var seen = sky_colour(frame.sky_horizon, frame.sky_top, frame.sky_bottom, ray.direction.y);
+    var seen = sky_seen(ray.direction);
     if (looks && frame.sun_cosine <= 1.0) {
         seen += sun_disc(frame.sun, frame.sun_radiance, frame.sun_cosine, ray.direction);
     }

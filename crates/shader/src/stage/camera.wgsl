@@ -23,6 +23,18 @@ fn camera_ray(at: vec2f) -> Ray {
     return Ray(across_plane(q, frame.right, frame.up, frame.eye), -frame.back, 1.0, 0.0);
 }
 
+/// The ray from a place on the lens that meets the one through its middle in the plane that is in focus.
+fn lens_ray(at: vec2f, lens: vec2f) -> Ray {
+    let q = on_plane(at, frame.half, frame.scale);
+    let nearer = 1.0 / frame.focus;
+    if (frame.pinhole != 0u) {
+        let direction = pinhole_ray(q - lens * nearer, frame.right, frame.up, frame.back);
+        return Ray(across_plane(lens, frame.right, frame.up, frame.eye), direction, view_narrowness(direction, frame.back), 0.0);
+    }
+    let direction = pinhole_ray(-lens * nearer, frame.right, frame.up, frame.back);
+    return Ray(across_plane(q + lens, frame.right, frame.up, frame.eye), direction, 1.0, 0.0);
+}
+
 /// A cone around the ray through `at` that holds all rays through the square of `reach` pixels around it: slope and constant
 /// of its radius.
 fn cone_width(at: vec2f, reach: f32) -> vec2f {

@@ -44,7 +44,7 @@ fn picture(corner: vec2f, size: vec2f, angles: vec2f) -> vec4f {
     var sum = vec3f(0.0);
     let rays = max(frame.samples, 1u);
     for (var k = 0u; k < rays; k++) {
-        let ray = camera_ray(corner + jitter(pixel, k));
+        let ray = pixel_ray(corner + jitter(pixel, k), pixel, k);
         sum += trace_ray(pixel, k, ray, vec3f(0.0, -1.0, FAR)).colour;
     }
     return vec4f(srgb(sum / f32(rays) * EXPOSURE), 1.0);

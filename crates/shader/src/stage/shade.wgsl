@@ -33,21 +33,38 @@ fn towards(light: Light, p: vec3f) -> vec4f {
 }
 
 /// What arrives from all lights.
-fn arriving(path: Onward, at: Surface, what: LocalMaterial) -> Arrival {
+fn arriving(path: Onward, at: Surface, what: LocalMaterial, followed: f32) -> Arrival {
     var sum = Arrival(vec3f(0.0), vec3f(0.0), vec3f(0.0), 0.0, 0.0);
     // lights do not shine on the inner side of a clear body
     let shone = select(1.0, 1.0 - what.finish.w, at.side < 0.0);
     let origin = at.point + at.normal * at.offset;
-    for (var k = 0u; k < frame.lights; k++) {
-        let light = load_light(frame.light_rows + k * LIGHT_ROWS);
-        let ray = aim(path, light, k, origin);
+    let all = frame.lights + lights_around();
+    for (var k = 0u; k < all; k++) {
+        var light = Light();
+        if (k < frame.lights) {
+            light = load_light(frame.light_rows + k * LIGHT_ROWS);
+        } else {
+            light = light_around(path);
+        }
+        let is_lamp = light.kind >= LAMP_RECTANGLE;
+        var ray = vec4f(0.0);
+        if (is_lamp) {
+            ray = aim_lamp(path, light, k, origin);
+        } else {
+            ray = aim(path, light, k, origin);
+        }
         var lit = shadow(at, light, ray.xyz, ray.w);
-        let to = aim(path, light, k, at.point);
         if (at.side < 0.0) {
             lit *= shining(path);
         }
         // by the cosine law, in the highlight, the part of that at grazing angles, and what distance leaves
-        let answer = light_response(to.xyz, to.w, light.kind, what.normal, at.direction, light_finish(what));
+        var answer = vec4f(0.0);
+        if (is_lamp) {
+            answer = lamp_response(path, light, ray, at, what, followed, origin);
+        } else {
+            let to = aim(path, light, k, at.point);
+            answer = light_response(to.xyz, to.w, light.kind, what.normal, at.direction, light_finish(what));
+        }
         let power = answer.w * lit;
         sum.diffuse += light.radiance * (answer.x * power);
         sum.gloss += light.radiance * (answer.y * power * shone);

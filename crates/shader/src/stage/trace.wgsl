@@ -25,7 +25,7 @@ fn blend(a: LocalMaterial, b: LocalMaterial, share: f32) -> LocalMaterial {
 
 /// What a ray found that hit nothing.
 fn background(path: Onward, steps: u32) -> Sample {
-    return Sample(sky_of(path), -1.0, vec3f(0.0), 0.0, vec3f(0.0), 1.0, 1.0, 0.0, f32(steps), 0u);
+    return Sample(sky_of(path) + glow(path, FAR), -1.0, vec3f(0.0), 0.0, vec3f(0.0), 1.0, 1.0, 0.0, f32(steps), 0u);
 }
 
 /// A ray that waits to be followed.
@@ -46,6 +46,8 @@ struct Onward {
     start: f32,
     slope: f32,
     end: f32,
+    /// The density over directions with which the last surface chose the ray's, where lights are looked for from there too; else -1.
+    density: f32,
 }
 
 /// The ray comes from the eye: it shows as much of its pixel as it weighs.
@@ -58,7 +60,7 @@ fn trace_ray(pixel: vec2u, index: u32, ray: Ray, span: vec3f) -> Sample {
     var cover = 0.0;
     var waiting: array<Onward, WAITING>;
     let start = max(max(enter(ray, frame.threshold.x, frame.threshold.y), frame.near), span.x);
-    let own = Onward(ray, vec3f(1.0), vec2u(0u), -1.0, FROM_EYE, pixel, index, start, span.y, span.z);
+    let own = Onward(ray, vec3f(1.0), vec2u(0u), -1.0, FROM_EYE, pixel, index, start, span.y, span.z, -1.0);
     var count = parts_of_pixel(own, &waiting);
     while (count > 0u) {
         count -= 1u;
@@ -184,14 +186,15 @@ fn follow(path: Onward, next: ptr<function, array<Onward, 2>>) -> Sample {
             what.normal = normalize(what.normal);
         }
     }
-    let light = arriving(path, at, what);
     let followed = go_on(path, at, t, what, marks.first, next);
-    var colour = colour_of(what, light, at, seen, followed);
+    let light = arriving(path, at, what, followed);
+    var colour = colour_of(what, light, at, seen, followed) + surround(at, what, seen, followed);
     if (found.side > 0.0) {
         colour = hazed(ray, t, colour);
     } else if (path.medium >= 0.0 || what.finish.w > 0.0) {
         colour *= transmittance(body_of(path, marks.first).attenuation, t);
     }
+    colour += glow(path, t);
     counted[COUNT_HITS] += select(0u, 1u, (path.flags & FROM_EYE) != 0u);
     return Sample(
         colour,

@@ -7,11 +7,11 @@ fn trace(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_ind
     if (id.x < tile.size.x && id.y < tile.size.y) {
         let pixel = tile.corner + id.xy;
         var span = vec3f(0.0, -1.0, FAR);
-        if (frame.prepass != 0u) {
+        if (frame.prepass != 0u && !has_lens()) {
             span = cones[cone_of(pixel)].xyz;
         }
         let within = jitter(pixel, tile.index);
-        var found = trace_ray(pixel, tile.index, camera_ray(vec2f(pixel) + within), span);
+        var found = trace_ray(pixel, tile.index, pixel_ray(vec2f(pixel) + within, pixel, tile.index), span);
         if (frame.samples != 0u) {
             found.place = pack2x16unorm(within);
         }

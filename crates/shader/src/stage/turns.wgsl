@@ -138,7 +138,7 @@ fn trace(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_ind
         if (note_count != TRACED) {
             let pixel = tile.corner + id.xy;
             let within = jitter(pixel, tile.index);
-            var found = trace_ray(pixel, tile.index, camera_ray(vec2f(pixel) + within), vec3f(0.0, -1.0, FAR));
+            var found = trace_ray(pixel, tile.index, pixel_ray(vec2f(pixel) + within, pixel, tile.index), vec3f(0.0, -1.0, FAR));
             if (asked == 0u) {
                 if (frame.samples != 0u) {
                     found.place = pack2x16unorm(within);

@@ -5,27 +5,33 @@ const SCATTERED: u32 = 1u;
 /// The last surface was that of a clear body.
 const SEES_LIGHTS: u32 = 2u;
 
-/// A hash of a number whose bit k depends on lower bits alone (Laine and Karras 2011, with the constants of Burley 2020).
-fn laine_karras(number: u32, seed: u32) -> u32 {
-    var x = number + seed;
-    x ^= x * LAINE_KARRAS_A;
-    x ^= x * LAINE_KARRAS_B;
-    x ^= x * LAINE_KARRAS_C;
-    return x ^ (x * LAINE_KARRAS_D);
-}
-
-fn owen(x: u32, seed: u32) -> u32 {
-    return mirror_bits(laine_karras(mirror_bits(x), seed));
-}
-
 /// Two random numbers for a decision at a surface.
 fn decided(path: Onward, decision: u32) -> vec2f {
-    let key = scramble(path.pixel, frame.seed ^ HIT_SEEDS);
-    let number = path.bounces.x * PATH_DECISIONS + decision;
-    let a = scramble(key, number);
-    let c = scramble(key.yx, ~number);
-    let at = sobol(owen(path.index, c.x));
-    return vec2f(vec2u(owen(at.x, a.x), owen(at.y, a.y)) >> vec2u(8u)) * UNIT;
+    return decided_point(path.pixel, path.index, path.bounces.x * PATH_DECISIONS + decision);
+}
+
+/// What arrives from all around as it counts where it lights the scene, and where it is seen in a mirror.
+fn as_lighting(path: Onward, answer: vec4f) -> vec4f {
+    let mirrored = select(1.0, frame.ambient, (path.flags & SCATTERED) != 0u);
+    return vec4f(answer.x * frame.ambient, answer.yz * mirrored, answer.w);
+}
+
+/// How much of what is looked for counts that rays which go on may find too: `found` is the density over directions with which it is
+/// looked for.
+fn counted_light(path: Onward, answer: vec4f, to: vec3f, found: f32, at: Surface, what: LocalMaterial, followed: f32) -> vec4f {
+    var counted = answer;
+    if (is_physical()) {
+        let shine = lamp_highlight(at.normal, to, at.direction, what.finish.z);
+        counted.y = shine.x;
+        counted.z = shine.y;
+    }
+    if (path.bounces.x + 1u >= frame.depth) {
+        return counted;
+    }
+    let scattered = scatter_density(what.albedo, what.finish, what.normal, at.direction, to);
+    let clear = what.finish.w * (1.0 - what.finish.y);
+    let mirrors = balance(found, scattered.y) * (1.0 - clear);
+    return vec4f(counted.x * balance(found, scattered.x), counted.y * mirrors, counted.z * mirrors, counted.w);
 }
 
 /// The sky comes along the rays that meet nothing.
@@ -58,6 +64,9 @@ fn shining(path: Onward) -> f32 {
 
 fn sky_of(path: Onward) -> vec3f {
     var seen = sky_along(path.ray, path.ray.travelled == 0.0);
+    if (path.density >= 0.0) {
+        seen -= found_already(path);
+    }
     if ((path.flags & SCATTERED) != 0u) {
         seen *= frame.ambient;
     }
@@ -117,8 +126,14 @@ fn go_on(path: Onward, at: Surface, t: f32, what: LocalMaterial, material: f32, 
         return 1.0;
     }
     let ray = Ray(at.point + at.normal * (at.offset * side), way.xyz, path.ray.narrow, t + path.ray.travelled);
+    // from inside a clear body no light is looked for, nor behind one
+    var density = -1.0;
+    if (lobe < 1.5 && !(inside && path.medium >= 0.0) && meets_lights()) {
+        let scattered = scatter_density(what.albedo, what.finish, what.normal, at.direction, way.xyz);
+        density = select(scattered.x, scattered.y, lobe > 0.5);
+    }
     var flags = path.flags & SCATTERED;
     flags |= select(0u, SCATTERED, lobe < 0.5) | select(0u, SEES_LIGHTS, lobe > 1.5);
-    (*next)[0] = Onward(ray, weight, path.bounces + vec2u(1u, 0u), medium, flags, path.pixel, path.index, 0.0, -1.0, FAR);
+    (*next)[0] = Onward(ray, weight, path.bounces + vec2u(1u, 0u), medium, flags, path.pixel, path.index, 0.0, -1.0, FAR, density);
     return 1.0;
 }

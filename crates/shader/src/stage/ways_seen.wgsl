@@ -29,3 +29,13 @@ fn shining(path: Onward) -> f32 {
 fn sky_of(path: Onward) -> vec3f {
     return sky_along(path.ray, path.ray.travelled == 0.0);
 }
+
+/// What arrives from all around as it counts where it lights the scene.
+fn as_lighting(path: Onward, answer: vec4f) -> vec4f {
+    return answer;
+}
+
+/// What mirrored rays see is no highlight.
+fn counted_light(path: Onward, answer: vec4f, to: vec3f, found: f32, at: Surface, what: LocalMaterial, followed: f32) -> vec4f {
+    return vec4f(answer.x, answer.yz * (1.0 - followed), answer.w);
+}

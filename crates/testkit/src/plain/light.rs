@@ -1,13 +1,18 @@
 //! Shadows.
 
-use super::{Plain, Probe, field, glam};
+use super::{Plain, Probe, Ray, Way, field, glam};
 use glam::Vec3;
 use zeroset_scene::settings::Shadow;
-use zeroset_shade::light::arrival;
+use zeroset_shade::air::{self, Air};
+use zeroset_shade::bsdf::DECISIONS;
+use zeroset_shade::lamp::{Lamp, Shape};
+use zeroset_shade::light::{arrival, luminance, response};
+use zeroset_shade::sampling::{basis, decided, hit_seed, scramble};
 use zeroset_shade::secondary::{FIRST, LEAST, STOP};
 use zeroset_shade::shadow::{DARK, closest};
 use zeroset_shade::skin;
 use zeroset_shade::view::ROUNDING;
+use zeroset_shade::view::on_disc;
 
 /// A place on a surface that light falls on.
 pub(super) struct Surface {
@@ -34,10 +39,48 @@ pub(super) struct Light {
 
 impl Plain<'_> {
     /// Sums up what arrives from the lights.
-    pub(super) fn light(&self, probe: &mut impl Probe, at: &Surface, finish: f32) -> Light {
+    pub(super) fn light(
+        &self,
+        probe: &mut impl Probe,
+        at: &Surface,
+        finish: f32,
+        way: &Way,
+        followed: f32,
+    ) -> Light {
         let (mut sum, mut shares) = (Light::default(), 0.0);
-        for light in self.scene.lights() {
+        for (light, number) in self.scene.lights().iter().zip(0..) {
             let origin = at.p + at.normal * at.offset;
+            if let Some(lamp) = Lamp::of(light) {
+                let surfaces = way.reflections + way.refractions;
+                let [x, y] = way.pixel;
+                let key = scramble(x, y, hit_seed(self.settings.seed, 0));
+                let u = decided(way.index, key, surfaces * DECISIONS + 2 + number);
+                let (to, distance, falloff) = place_on(&lamp, origin, u);
+                let lit = match light.shadow {
+                    _ if at.normal.dot(to) <= 0.0 => 0.0,
+                    Shadow::None => 1.0,
+                    _ if at.side < 0.0 => 1.0,
+                    _ => self.hard(probe, at, to, distance, |_| 0.0),
+                };
+                let (n, d) = (field(at.shown), field(at.d));
+                let answer = response(
+                    self.settings.shading,
+                    false,
+                    (field(to), f32::INFINITY),
+                    n,
+                    d,
+                    finish,
+                );
+                let seen = if lamp.visible { 1.0 - followed } else { 1.0 };
+                let colour = light.radiance * falloff;
+                sum.diffuse += colour * (answer.diffuse * lit);
+                sum.gloss += colour * (answer.gloss * lit * seen);
+                sum.grazing += colour * (answer.grazing * lit * seen);
+                let share = luminance(colour.to_array());
+                sum.shadow += share * lit;
+                shares += share;
+                continue;
+            }
             let (to, distance) = Self::towards(&light.source, origin);
             let lit = match light.shadow {
                 _ if at.normal.dot(to) <= 0.0 => 0.0,
@@ -67,6 +110,30 @@ impl Plain<'_> {
             shares += got.share;
         }
         sum.shadow /= shares.max(1e-20);
+        sum
+    }
+
+    /// The light of the lamps that a ray passes before it ends at `t`.
+    pub(super) fn glow(&self, probe: &mut impl Probe, ray: &Ray, way: &Way, t: f32) -> Vec3 {
+        let mut sum = Vec3::ZERO;
+        let lamps = self.scene.lights().iter().filter_map(Lamp::of);
+        for lamp in lamps.filter(|lamp| lamp.visible) {
+            let Some(at) = met(&lamp, ray.o, ray.d).filter(|at| *at < t) else {
+                continue;
+            };
+            let left = match way.medium {
+                Some(medium) => (-self.material(probe, medium).attenuation * at).exp(),
+                None => {
+                    let air = Air::of(self.scene.sky(), self.scene.lights());
+                    let share = match air.is_foggy() {
+                        true => air::share(air.density, air.falloff, ray.o.y, ray.d.y, at),
+                        false => 0.0,
+                    };
+                    Vec3::splat(1.0 - share)
+                }
+            };
+            sum += glam(lamp.strength) * (std::f32::consts::PI / lamp.area) * left;
+        }
         sum
     }
 
@@ -151,6 +218,59 @@ impl Plain<'_> {
         }
         light
     }
+}
+
+/// A place on a lamp as it is seen from `p`, by a point of the unit square: the way there, and what distance leaves.
+fn place_on(lamp: &Lamp<f32>, p: Vec3, u: [f32; 2]) -> (Vec3, f32, f32) {
+    let (middle, right, up) = (glam(lamp.place), glam(lamp.right), glam(lamp.up));
+    let [x, y] = match lamp.shape {
+        Shape::Rectangle => [2.0 * u[0] - 1.0, 2.0 * u[1] - 1.0],
+        Shape::Disc => on_disc(u),
+        Shape::Sphere => {
+            let way = middle - p;
+            let far = way.length();
+            let sine = lamp.radius / far;
+            if sine >= 1.0 {
+                return (way / far, 0.0, 0.0);
+            }
+            let most = sine * sine / (1.0 + (1.0 - sine * sine).sqrt());
+            let cosine = 1.0 - most * u[0];
+            let [a, b] = basis(field(way / far)).map(glam);
+            let (sin, cos) = (u[1] * std::f32::consts::TAU).sin_cos();
+            let aside = (most * u[0] * (2.0 - most * u[0])).sqrt();
+            let to = (a * cos + b * sin) * aside + way / far * cosine;
+            let t = met(lamp, p, to).unwrap_or(far * cosine);
+            return (to, t, 2.0 * most / (lamp.radius * lamp.radius));
+        }
+    };
+    let way = middle + right * x + up * y - p;
+    let (far, front) = (way.length(), right.cross(up).normalize());
+    let to = way / far;
+    (to, far, (-front.dot(to)).max(0.0) / (far * far))
+}
+
+/// How far a ray comes to a lamp, if it meets it from its front.
+fn met(lamp: &Lamp<f32>, o: Vec3, d: Vec3) -> Option<f32> {
+    let (middle, right, up) = (glam(lamp.place), glam(lamp.right), glam(lamp.up));
+    if lamp.shape == Shape::Sphere {
+        let (way, square) = (middle - o, lamp.radius * lamp.radius);
+        let along = way.dot(d);
+        let left = square - (way - d * along).length_squared();
+        let t = along - left.max(0.0).sqrt();
+        return (left > 0.0 && t > 0.0 && way.length_squared() > square).then_some(t);
+    }
+    let front = right.cross(up);
+    let t = front.dot(middle - o) / front.dot(d);
+    let on = o + d * t - middle;
+    let (x, y) = (
+        on.dot(right) / right.length_squared(),
+        on.dot(up) / up.length_squared(),
+    );
+    let within = match lamp.shape {
+        Shape::Rectangle => x.abs() <= 1.0 && y.abs() <= 1.0,
+        Shape::Disc | Shape::Sphere => x * x + y * y <= 1.0,
+    };
+    (front.dot(d) < 0.0 && t > 0.0 && within).then_some(t)
 }
 
 /// Whether a ray that came near something at `t` touches it there and gets through all the same, and on to `end`: it was

@@ -17,20 +17,25 @@ pub use probe::{Compiled, Formula, Mark, Probe};
 use glam::Vec3;
 use light::Surface;
 use rayon::prelude::*;
+use std::sync::Arc;
 use zeroset_catalogue::bounds::Aabb;
 use zeroset_field::program::Program;
 use zeroset_number::v3;
 use zeroset_scene::film::{Film, Plane};
+use zeroset_scene::light::Sky;
 use zeroset_scene::material::Material;
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Filter, Integrator, Settings, Shading};
 use zeroset_shade::air::{self, Air};
+use zeroset_shade::environment::EnvironmentMap;
 use zeroset_shade::march::MARKS_BEHIND;
 use zeroset_shade::pattern::Place;
-use zeroset_shade::sampling::{hit_seed, point, radius, scramble, weight};
+use zeroset_shade::sampling::{LENS, decided, hit_seed, point, radius, scramble, weight};
 use zeroset_shade::skin::has_skins;
 use zeroset_shade::sky::SkyColours;
-use zeroset_shade::surface::{FAINTEST, Lighting, LocalMaterial, colour, followed_share, mirrored};
+use zeroset_shade::surface::{
+    FAINTEST, Lighting, LocalMaterial, around, colour, followed_share, mirrored,
+};
 use zeroset_shade::view::{Region, View};
 
 fn glam(v: zeroset_number::Vec3<f32>) -> Vec3 {
@@ -59,6 +64,9 @@ struct Way {
     refractions: u32,
     /// The clear body that it is in.
     medium: Option<f32>,
+    /// Where its random numbers come from: the pixel, and which of its samples.
+    pixel: [u32; 2],
+    index: u32,
 }
 
 impl Default for Way {
@@ -68,6 +76,8 @@ impl Default for Way {
             reflections: 0,
             refractions: 0,
             medium: None,
+            pixel: [0; 2],
+            index: 0,
         }
     }
 }
@@ -149,6 +159,7 @@ pub fn render<P: Probe>(scene: &Scene, quality: &Quality, probe: impl Fn() -> P 
         region: Region::new(&quality.bounds),
         quality: *quality,
         fallback: Material::default(),
+        around: EnvironmentMap::renewed(None, scene),
     };
     let samples = plain.samples();
     let rows: Vec<Vec<Sample>> = (0..height)
@@ -168,6 +179,8 @@ struct Plain<'a> {
     region: Region,
     quality: Quality,
     fallback: Material,
+    /// Light from all around, by an image.
+    around: Option<Arc<EnvironmentMap>>,
 }
 
 /// Rays along a side of a pixel of which the covered parts are wanted: that many squared are close to the area.
@@ -220,14 +233,58 @@ impl Plain<'_> {
         let ray = self.view.ray(x as f32 + u, y as f32 + v);
         let (o, d) = self.view.split(ray);
         let (o, d) = (glam(o), glam(d));
-        let ray = Ray {
-            o,
-            d,
-            narrow: self.narrow(o, d),
-            travelled: 0.0,
+        let narrow = self.narrow(o, d);
+        let ray = match self.through_lens(o, d, [x, y], index) {
+            Some((o, d)) => Ray {
+                o,
+                d,
+                narrow: if self.view.pinhole {
+                    self.narrow(o, d)
+                } else {
+                    narrow
+                },
+                travelled: 0.0,
+            },
+            None => Ray {
+                o,
+                d,
+                narrow,
+                travelled: 0.0,
+            },
         };
         let key = scramble(x, y, hit_seed(self.settings.seed, index));
-        self.follow(probe, &ray, key, &Way::default())
+        let way = Way {
+            pixel: [x, y],
+            index,
+            ..Way::default()
+        };
+        self.follow(probe, &ray, key, &way)
+    }
+
+    /// The ray of a sample from its place on the lens, where that has an extent: to where the ray through its middle, from `o` along `d`,
+    /// comes to the plane that is in focus.
+    fn through_lens(&self, o: Vec3, d: Vec3, [x, y]: [u32; 2], index: u32) -> Option<(Vec3, Vec3)> {
+        let camera = self.scene.camera();
+        if camera.aperture == 0.0 || self.settings.antialias.filter().is_none() {
+            return None;
+        }
+        let key = scramble(x, y, hit_seed(self.settings.seed, 0));
+        let [a, b] = decided(index, key, LENS).map(|u| 2.0 * u - 1.0);
+        // the square is a square of rings, and each becomes a circle
+        let ring = a.abs().max(b.abs());
+        let (sin, cos) = if ring == 0.0 {
+            (0.0, 1.0)
+        } else if a.abs() > b.abs() {
+            let (sin, cos) = (std::f32::consts::FRAC_PI_4 * b / a).sin_cos();
+            (sin * a.signum(), cos * a.signum())
+        } else {
+            let (sin, cos) = (std::f32::consts::FRAC_PI_4 * a / b).sin_cos();
+            (cos * b.signum(), sin * b.signum())
+        };
+        let aside = camera.axes.x_axis * cos + camera.axes.y_axis * sin;
+        let from = o + aside * (camera.aperture * ring);
+        let sharp = o + d * (camera.focus / -d.dot(camera.axes.z_axis));
+        Some((from, (sharp - from).normalize()))
     }
 
     /// What a ray sees.
@@ -236,15 +293,10 @@ impl Plain<'_> {
         probe.enter(way.medium.is_some());
         let found = self.march(probe, ray);
         let Some(end) = found.hit else {
+            let looks = way.reflections + way.refractions == 0 && way.medium.is_none();
+            let sky = self.haze(ray, air::ENDLESS, self.sky(d, looks));
             return Sample {
-                colour: self.haze(
-                    ray,
-                    air::ENDLESS,
-                    self.sky(
-                        d,
-                        way.reflections + way.refractions == 0 && way.medium.is_none(),
-                    ),
-                ),
+                colour: sky + self.glow(probe, ray, way, f32::INFINITY),
                 hit: None,
                 steps: found.steps,
             };
@@ -302,7 +354,10 @@ impl Plain<'_> {
             Shading::Phong => what.shininess,
             _ => what.roughness,
         };
-        let light = self.light(probe, &surface, finish);
+        let bent_rays =
+            bounces.map(|limits| self.onward(probe, ray, &surface, t, &what, &mark, way, limits));
+        let (onward, followed) = bent_rays.unwrap_or_default();
+        let light = self.light(probe, &surface, finish, way, followed);
         let shone = if side < 0.0 {
             1.0 - what.transmission
         } else {
@@ -317,10 +372,16 @@ impl Plain<'_> {
             normal: field(surface.shown),
             direction: field(d),
         };
-        let sky_colours = SkyColours::of(self.scene.sky());
-        let bent_rays =
-            bounces.map(|limits| self.onward(probe, ray, &surface, t, &what, &mark, way, limits));
-        let (onward, followed) = bent_rays.unwrap_or_default();
+        let black = Sky {
+            top: Vec3::ZERO,
+            horizon: Vec3::ZERO,
+            bottom: Vec3::ZERO,
+            ..*self.scene.sky()
+        };
+        let sky_colours = SkyColours::of(match self.around {
+            Some(_) => &black,
+            None => self.scene.sky(),
+        });
         let mut c = glam(colour(
             self.settings.shading,
             &sky_colours,
@@ -328,6 +389,19 @@ impl Plain<'_> {
             &lighting,
             followed,
         ));
+        if let Some(map) = &self.around {
+            let mirror = d - surface.shown * (2.0 * surface.shown.dot(d));
+            let seen = map.reflected(field(mirror), what.roughness);
+            let arriving = map.arriving(field(bent)) * self.scene.sky().ambient;
+            c += glam(around(
+                self.settings.shading,
+                &what,
+                [field(surface.shown), field(d)],
+                open,
+                [arriving, seen],
+                followed,
+            ));
+        }
         for next in onward {
             let seen = self.follow(probe, &next.ray, key, &next.way);
             c += next.share * seen.colour;
@@ -339,6 +413,7 @@ impl Plain<'_> {
             let body = self.material(probe, way.medium.unwrap_or(mark.first));
             c *= (-body.attenuation * t).exp();
         }
+        c += self.glow(probe, ray, way, t);
         let hit = Hit {
             t,
             residual,
@@ -359,7 +434,10 @@ impl Plain<'_> {
     fn sky(&self, d: Vec3, looks: bool) -> Vec3 {
         let (sky, lights) = (self.scene.sky(), self.scene.lights());
         let air = Air::of(sky, lights);
-        let mut seen = sky.colour(d);
+        let mut seen = match &self.around {
+            Some(map) => glam(map.radiance(field(d))),
+            None => sky.colour(d),
+        };
         if looks && air.cosine <= 1.0 {
             seen += glam(air::disc(air.sun, air.radiance, air.cosine, field(d)));
         }

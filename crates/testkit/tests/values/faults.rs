@@ -187,7 +187,7 @@ fn faults_in_scenes_are_noticed() {
 
 /// What is wrong, in the text of which shader how, and the check that must notice. Formulas are recorded from those of the CPU:
 /// these faults are in how shaders call them, or in their numbers.
-const IN_SHADERS: [(&str, &str, &str, &str); 34] = [
+const IN_SHADERS: [(&str, &str, &str, &str); 41] = [
     (
         "a closest place behind the second sample",
         "closest_shadow(f, z, r, t, sharpness)",
@@ -427,6 +427,48 @@ const IN_SHADERS: [(&str, &str, &str, &str); 34] = [
         "(-2.3333333f)",
         "(-2.0f)",
         "Mitchell's filter",
+    ),
+    (
+        "a lens that is focused nearer",
+        "let nearer = 1.0 / frame.focus;",
+        "let nearer = 1.3 / frame.focus;",
+        "circles of confusion through a lens",
+    ),
+    (
+        "a lens half as wide",
+        "LENS_DECISION)) * frame.aperture);",
+        "LENS_DECISION)) * 0.5 * frame.aperture);",
+        "circles of confusion of a lens with parallel rays",
+    ),
+    (
+        "a lamp that sends as much aslant as straight on",
+        "falloff = sheet_falloff(lamp.right, lamp.up, ray.xyz, ray.w);",
+        "falloff = 1.0 / (ray.w * ray.w);",
+        "a disc of light over a floor",
+    ),
+    (
+        "a sphere of light that is looked for as if it were its middle",
+        "falloff = seen_sphere(lamp.place, lamp.radius, origin);",
+        "falloff = 1.0 / dot(lamp.place - origin, lamp.place - origin);",
+        "a sphere of light over a floor",
+    ),
+    (
+        "the density of the other end",
+        "counted.x * balance(found, scattered.x)",
+        "counted.x * balance(scattered.x, found)",
+        "a lamp that rays meet",
+    ),
+    (
+        "a lamp that counts from both ends",
+        "counts = balance(path.density, lamp_density(met.y, lamp.area));",
+        "counts = 1.0;",
+        "a lamp that rays meet",
+    ),
+    (
+        "half a rectangle",
+        "var on = u * 2.0 - 1.0;",
+        "var on = u;",
+        "a rectangle of light over a floor",
     ),
     (
         "parallel rays that spread",

@@ -8,11 +8,14 @@
 
 #![allow(unreachable_pub, reason = "the modules of a test are its own")]
 
+mod around;
 mod camera;
 mod coat;
 mod faults;
 mod film;
 mod known;
+mod lamps;
+mod lens;
 mod light;
 mod paths;
 mod pattern;
@@ -31,10 +34,12 @@ use zeroset_testkit::plain::{self, Compiled, Quality};
 
 /// Every check.
 fn checks() -> Vec<Check> {
-    let groups: [&[Check]; 9] = [
+    let groups: [&[Check]; 11] = [
         &camera::CHECKS,
         &coat::CHECKS,
         &film::CHECKS,
+        &lamps::CHECKS,
+        &lens::CHECKS,
         &light::CHECKS,
         &pattern::CHECKS,
         &shadow::CHECKS,

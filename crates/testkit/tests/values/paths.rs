@@ -4,7 +4,11 @@ use crate::known::{Check, Draw, Eye, Found, Lens, ball, floor, light, rgb, value
 use glam::DVec3;
 use zeroset::scene::film::{Film, Plane};
 
-pub const CHECKS: [Check; 9] = [
+pub const CHECKS: [Check; 10] = [
+    Check {
+        name: "a lamp that rays meet",
+        run: crate::lamps::in_paths,
+    },
     Check {
         name: "a white world",
         run: furnace,

@@ -36,7 +36,10 @@ pub(crate) struct Job<'a> {
 
 impl<'a> Job<'a> {
     pub(crate) fn new(args: &'a RenderArgs, console: &'a Console) -> Result<Job<'a>, Failure> {
-        let options = crate::scene::options(&args.scene, args.size.map(|s| s.0))?;
+        let options = Options {
+            moments: true,
+            ..crate::scene::options(&args.scene, args.size.map(|s| s.0))?
+        };
         if let Some(path) = &args.output
             && Container::of(path)? == Container::Exr
             && args.view != Plane::Colour

@@ -360,6 +360,10 @@ fn identity(
     }
     let mut digest = Digest::new();
     digest.add(all.to_string().as_bytes());
+    for moment in scene.moments() {
+        let moment = expand(moment).map_err(|error| failed(error.to_string()))?;
+        digest.add(moment.to_string().as_bytes());
+    }
     for file in data_files(loaded) {
         let bytes = fs::read(&file).map_err(|e| {
             let message = format!("cannot read {}: {e}", file.display());
