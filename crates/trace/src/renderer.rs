@@ -15,6 +15,7 @@ use web_time::Instant;
 use zeroset_catalogue::bounds::Aabb;
 use zeroset_catalogue::entries::catalogue;
 use zeroset_catalogue::tape::Operation;
+use zeroset_cells::Cells;
 use zeroset_field::field::Field;
 use zeroset_field::program::{Limits, Program};
 use zeroset_number::at_level;
@@ -135,6 +136,8 @@ pub struct PreparedScene {
     pub(crate) renderer: CpuRenderer,
     pub(crate) scene: Arc<Scene>,
     pub(crate) program: Program,
+    /// Its cells, where it is worth while.
+    cells: Option<Arc<Cells>>,
     /// The same for rays inside clear bodies, where there are opaque ones too.
     pub(crate) inside: Option<Program>,
     /// See [`Program::inside_marks`].
@@ -165,13 +168,15 @@ pub struct PreparedScene {
 impl PreparedScene {
     fn new(renderer: CpuRenderer, scene: Arc<Scene>) -> Result<PreparedScene, RenderError> {
         let (program, region) = compiled(&scene, &renderer.limits)?;
-        Ok(PreparedScene::of(renderer, scene, program, region))
+        let cells = cells_of(&scene, &program);
+        Ok(PreparedScene::of(renderer, scene, program, cells, region))
     }
 
     fn of(
         renderer: CpuRenderer,
         scene: Arc<Scene>,
         program: Program,
+        cells: Option<Arc<Cells>>,
         region: Region,
     ) -> PreparedScene {
         let (mut materials, mut objects) = (BTreeSet::new(), BTreeSet::new());
@@ -212,6 +217,7 @@ impl PreparedScene {
             inside: program.inside(),
             inside_marks: program.inside_marks(),
             program,
+            cells,
             region,
             material: only(&materials),
             object: only(&objects),
@@ -242,6 +248,24 @@ impl PreparedScene {
     /// What the scene compiled to.
     pub fn program(&self) -> &Program {
         &self.program
+    }
+
+    /// The cells of its program, where there are any: see [`Cells::new`].
+    pub fn cells(&self) -> Option<&Cells> {
+        self.cells.as_deref()
+    }
+
+    /// The scene without cells: the same picture, slower or, where they were not worth while, as fast.
+    pub fn without_cells(self) -> PreparedScene {
+        PreparedScene {
+            cells: None,
+            ..self
+        }
+    }
+
+    /// What is marched.
+    pub(crate) fn field(&self) -> (&Program, Option<&Cells>) {
+        (&self.program, self.cells())
     }
 
     /// Renders as the scene's own camera and settings say, but for the size, until the observer ends it.
@@ -310,14 +334,16 @@ impl PreparedScene {
 
 impl Prepared for PreparedScene {
     fn update(&mut self, scene: Arc<Scene>) -> Result<(), RenderError> {
-        let (program, region) = if scene.has_field_of(&self.scene) {
-            (self.program.clone(), self.region)
+        let (program, cells, region) = if scene.has_field_of(&self.scene) {
+            (self.program.clone(), self.cells.clone(), self.region)
         } else {
-            compiled(&scene, &self.renderer.limits)?
+            let (program, region) = compiled(&scene, &self.renderer.limits)?;
+            let cells = cells_of(&scene, &program);
+            (program, cells, region)
         };
         let spare = std::mem::take(&mut self.spare);
         let fits = program.structure() == self.program.structure();
-        *self = PreparedScene::of(self.renderer.clone(), scene, program, region);
+        *self = PreparedScene::of(self.renderer.clone(), scene, program, cells, region);
         if fits {
             self.spare = spare;
         }
@@ -381,6 +407,15 @@ fn compiled(scene: &Scene, limits: &Limits) -> Result<(Program, Region), RenderE
     let sphere = &catalogue().primitives[0];
     let field = Field::primitive(sphere, sphere.info.defaults())?;
     Ok((Program::compile(&field, limits)?, Region::new(&Aabb::EMPTY)))
+}
+
+/// The cells of a scene's program, around all objects that have an end.
+fn cells_of(scene: &Scene, program: &Program) -> Option<Arc<Cells>> {
+    let boxes = scene.objects().iter().map(|o| o.field.facts().bounds);
+    let around = boxes
+        .filter(|b| b.is_finite() && !b.is_empty())
+        .fold(Aabb::EMPTY, |all, b| all.hull(&b));
+    Cells::new(program, around).map(Arc::new)
 }
 
 /// Rows of sums that tiles beside each other add to.
