@@ -41,7 +41,9 @@ use groups::Groups;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use zeroset_catalogue::bounds::Aabb;
-use zeroset_catalogue::tape::{Code, Tape};
+use zeroset_catalogue::op::arithmetic::Binary;
+use zeroset_catalogue::op::code;
+use zeroset_catalogue::tape::{Code, Operation, Tape};
 use zeroset_eval::{BATCH, Lane, Marks, Workspace};
 use zeroset_field::program::Program;
 
@@ -63,6 +65,8 @@ const MOST_CUTS: u32 = 5;
 
 /// How far cells go beyond what they are made around, in its sizes.
 const REACH: f32 = 64.0;
+/// Cells with sides above this share of it are cut though their tapes stay as long: what they see of it may all be equally far.
+const COARSE: f32 = 0.25;
 /// Cells are not cut below this share of the size of what they are made around.
 const FINEST: f32 = 1.0 / 1024.0;
 
@@ -115,6 +119,10 @@ impl Cells {
     /// As [`Cells::new`], with another budget of bytes.
     pub fn within(program: &Program, around: Aabb, budget: usize) -> Option<Cells> {
         let structure = program.structure();
+        // a remainder by zero is no number, and no range says so
+        if divides_by_what_varies(program) {
+            return None;
+        }
         let slopes = program.slope() >= STEEP && !program.is_fractal();
         if (structure.values.instructions.len() < LEAST_INSTRUCTIONS && !slopes)
             || around.is_empty()
@@ -146,7 +154,7 @@ impl Cells {
             }
         } else {
             Cut {
-                coarse: 2.0 * size,
+                coarse: size * COARSE,
                 finest: 2.0 * size * FINEST,
                 budget,
                 slopes,
@@ -179,6 +187,18 @@ impl Cells {
     /// The tape that gives the program's values around a point.
     pub fn tape_at(&self, p: [f32; 3]) -> Tape<'_> {
         self.tape(self.find(p, Side::Values).values())
+    }
+
+    /// As [`Cells::tape_at`], at a point of more precise numbers; no cell is made for it.
+    pub fn tape_near(&self, p: [f64; 3]) -> Tape<'_> {
+        let mut cell = &self.root;
+        if !cell.holds_near(p) {
+            return self.program.values();
+        }
+        while let Some(part) = cell.part_near(p) {
+            cell = part;
+        }
+        self.tape(cell.values())
     }
 
     /// The tape that gives the program's marks around a point.
@@ -329,4 +349,20 @@ impl Cells {
         self.instructions.fetch_add(all, Ordering::Relaxed);
         self.points.fetch_add(points as u64, Ordering::Relaxed);
     }
+}
+
+/// Whether a formula in the program takes remainders by anything but a constant other than zero.
+fn divides_by_what_varies(program: &Program) -> bool {
+    let tape = program.values();
+    let mut constant = vec![false; usize::from(tape.code.registers)];
+    for i in &tape.code.instructions {
+        if i.operation == Operation::Pair(code::binary(Binary::Modulo))
+            && !constant[usize::from(i.b)]
+        {
+            return true;
+        }
+        constant[usize::from(i.out)] = i.operation == Operation::Leaf(code::CONSTANT)
+            && (tape.data.params.get(i.at as usize)).is_some_and(|c| *c != 0.0);
+    }
+    false
 }

@@ -418,12 +418,17 @@ proptest! {
         }
         let budget = Budget { operations: 2000, ..Budget::default() };
         let bounds = Aabb::centred([2.0; 3]);
+        // a remainder by zero is no number, and no range says so: programs with any have no cells
+        let has_remainders = steps.iter().any(|s| matches!(s, FormulaStep::Binary(Binary::Modulo, ..)));
         let formula = Steps::new(steps).ok().and_then(|steps| {
             let proven = Formula::prove(steps.clone(), bounds, &budget).ok();
             proven.or_else(|| Formula::stated(steps, bounds, 10.0).ok())
         });
         if let Some(formula) = formula {
             let program = compiled(&Field::formula(Arc::new(formula)));
+            if has_remainders && Cells::new(&program, bounds).is_none() {
+                return Ok(());
+            }
             check_boxes("formula", &program, 2.2, 6, &mut Random(seed));
         }
     }
@@ -450,4 +455,40 @@ fn a_tape_of_another_place_is_noticed() {
         noticed += usize::from(differing(&whole, &less, &points).is_some());
     }
     assert!(noticed > 5, "{noticed} of 40");
+}
+
+/// Cells end where their budget ends, and say the same.
+#[test]
+fn a_small_budget_is_kept() {
+    let mut r = Random(0x5eed_1006);
+    let parts: Vec<Field> = (0..60)
+        .map(|_| {
+            let at = r.point(3.0);
+            let scaled = solid(&mut r).place(Placement::scaled(0.3)).unwrap();
+            scaled.place(Placement::moved(at)).unwrap()
+        })
+        .collect();
+    let union = catalogue().join("union").unwrap();
+    let program = compiled(&Field::join(union, Vec::new(), parts).unwrap());
+    let around = Aabb::centred([3.5; 3]);
+    let budget = 60_000;
+    let few = Cells::within(&program, around, budget).expect("cells");
+    let many = Cells::new(&program, around).expect("cells");
+    for _ in 0..40 {
+        let points = Box3::random(&mut r, 4.0).points(&mut r);
+        let level = Level::new();
+        let whole = with_tapes(level, program.values(), program.marks(), &points);
+        for cells in [&few, &many] {
+            let less = with_cells(level, cells, &program, &points);
+            assert_eq!(differing(&whole, &less, &points), None);
+        }
+    }
+    let (few, many) = (few.census(), many.census());
+    // one more that was on its way, and tapes for marks, which are fewer than cells
+    assert!(
+        few.bytes < 3 * budget && many.bytes > 10 * budget,
+        "{few:?}, {many:?}"
+    );
+    assert!(few.cells < many.cells);
+    assert!(few.instructions > many.instructions);
 }

@@ -27,6 +27,9 @@ pub(crate) const HEIGHT: usize = 32;
 /// Samples are spread over tiles.
 const _: () = assert!(WIDTH as u32 == CELL[0] && HEIGHT as u32 == CELL[1]);
 
+/// Where cells know the slopes of a field, rays may take so many times more steps than by distances.
+const PATIENCE: u32 = 4;
+
 /// What a tile covers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Area {
@@ -97,7 +100,12 @@ impl<'a> Solid<'a> {
             cells,
             region,
             view,
-            max_steps: program.patient(max_steps).min(ITERATIONS),
+            max_steps: match cells {
+                // by slopes that hold where a ray is, it gets along as by distances
+                Some(cells) if cells.has_slopes() => max_steps.saturating_mul(PATIENCE),
+                _ => program.patient(max_steps),
+            }
+            .min(ITERATIONS),
             fractal: program.is_fractal(),
             close: program.is_close(),
             skins,
