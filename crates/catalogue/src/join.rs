@@ -27,6 +27,9 @@ impl Join for Union {
     fn join<R: Real>(x: R, y: R, _a: Args<'_, R>) -> R {
         x.min(y)
     }
+    fn kept(x: SingleInterval, y: SingleInterval, _a: Args<'_, SingleInterval>) -> Kept {
+        Kept::smaller(x, y, 0.0)
+    }
     fn lipschitz(_a: &[f64], x: f64, y: f64) -> f64 {
         steeper(x, y)
     }
@@ -64,6 +67,9 @@ impl Join for Intersection {
     fn join<R: Real>(x: R, y: R, _a: Args<'_, R>) -> R {
         x.max(y)
     }
+    fn kept(x: SingleInterval, y: SingleInterval, _a: Args<'_, SingleInterval>) -> Kept {
+        Kept::smaller(-x, -y, 0.0)
+    }
     fn lipschitz(_a: &[f64], x: f64, y: f64) -> f64 {
         steeper(x, y)
     }
@@ -100,6 +106,9 @@ impl Join for Subtraction {
     fn join<R: Real>(x: R, y: R, _a: Args<'_, R>) -> R {
         x.max(-y)
     }
+    fn kept(x: SingleInterval, y: SingleInterval, _a: Args<'_, SingleInterval>) -> Kept {
+        Kept::smaller(-x, y, 0.0).with_second_negated()
+    }
     fn lipschitz(_a: &[f64], x: f64, y: f64) -> f64 {
         steeper(x, y)
     }
@@ -135,6 +144,15 @@ impl Join for Xor {
     #[inline(always)]
     fn join<R: Real>(x: R, y: R, _a: Args<'_, R>) -> R {
         x.min(y).max(-x.max(y))
+    }
+    fn kept(x: SingleInterval, y: SingleInterval, _a: Args<'_, SingleInterval>) -> Kept {
+        match Kept::smaller(x, y, 0.0) {
+            // max(x, -y)
+            Kept::First => Kept::smaller(-x, y, 0.0).with_second_negated(),
+            // max(y, -x)
+            Kept::Second if Kept::smaller(-y, x, 0.0) == Kept::First => Kept::Second,
+            _ => Kept::Both,
+        }
     }
     fn lipschitz(_a: &[f64], x: f64, y: f64) -> f64 {
         steeper(x, y)

@@ -45,6 +45,9 @@ impl Style for Chamfer {
     fn lower<R: Real>(x: R, y: R, a: Args<'_, R>) -> R {
         x.min(y).min(slanted(x, y, a.get(0)))
     }
+    fn lower_kept(x: SingleInterval, y: SingleInterval, a: Args<'_, SingleInterval>) -> Kept {
+        Kept::smaller(x, y, a.get(0).hi)
+    }
     fn reach(a: &[f64]) -> f64 {
         0.5 * a[0]
     }
@@ -71,6 +74,15 @@ impl Style for Fillet {
         let (u, v) = ((-(x - k)).max(0.0), (-(y - k)).max(0.0));
         let least = x.min(y);
         (least.like(k).max(least) - length2(u, v)).max(least - k * 0.5)
+    }
+    /// Beside the arc `k - (k - x)` is `x`, but for rounding: to the bit the minimum is left alone beyond both walls only.
+    fn lower_kept(x: SingleInterval, y: SingleInterval, a: Args<'_, SingleInterval>) -> Kept {
+        let k = a.get(0).hi;
+        if x.lo > k && y.lo > k {
+            Kept::smaller(x, y, 0.0)
+        } else {
+            Kept::Both
+        }
     }
     /// The derivatives on the arc are a unit vector.
     fn lipschitz(_a: &[f64], x: f64, y: f64) -> f64 {
@@ -139,6 +151,11 @@ impl Style for Stairs {
         );
         x.min(y).min(slanted(x, y, k) - wave * (two_steps * 0.5))
     }
+    /// Half a step beyond the slope.
+    fn lower_kept(x: SingleInterval, y: SingleInterval, a: Args<'_, SingleInterval>) -> Kept {
+        let k = a.get(0).hi;
+        Kept::smaller(x, y, k + k / a.get(1).lo.max(1.0))
+    }
     /// The middle of the slope is either a corner, half a step out, or between two.
     fn reach(a: &[f64]) -> f64 {
         0.5 * a[0] * (1.0 + 1.0 / a[1])
@@ -191,6 +208,10 @@ impl Style for Columns {
         );
         let columns = length2((x + y - k) * root, off * (radius * 2.0)) - radius;
         x.min(y).min(slanted(x, y, k)).min(columns)
+    }
+    /// The columns lie between the walls and touch them: who is `k` nearer to one of them than to the other is beside them.
+    fn lower_kept(x: SingleInterval, y: SingleInterval, a: Args<'_, SingleInterval>) -> Kept {
+        Kept::smaller(x, y, a.get(0).hi)
     }
     /// The derivatives towards a column's axis are a unit vector.
     fn lipschitz(_a: &[f64], x: f64, y: f64) -> f64 {

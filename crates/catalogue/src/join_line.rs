@@ -79,6 +79,11 @@ impl Join for Engrave {
     fn join<R: Real>(x: R, y: R, a: Args<'_, R>) -> R {
         x.max((x - y.abs() + a.get(0)) * 0.5)
     }
+    fn kept(x: SingleInterval, y: SingleInterval, a: Args<'_, SingleInterval>) -> Kept {
+        let size = x.mag() + y.mag() + a.get(0).hi;
+        let beside = x.lo + Real::abs(y).lo > a.get(0).hi + 1e-5 * size;
+        Kept::first_if(x.is_finite() && y.is_finite() && beside)
+    }
     fn lipschitz(_a: &[f64], x: f64, y: f64) -> f64 {
         x.max(0.5 * (x + y))
     }
@@ -131,6 +136,10 @@ impl Join for Groove {
     fn join<R: Real>(x: R, y: R, a: Args<'_, R>) -> R {
         x.max((x + a.get(0)).min(-(y.abs() - a.get(1) * 0.5)))
     }
+    fn kept(x: SingleInterval, y: SingleInterval, a: Args<'_, SingleInterval>) -> Kept {
+        let wall = -(Real::abs(y) - a.get(1) * 0.5);
+        Kept::first_if(Kept::smaller(-x, -wall, 0.0) == Kept::First)
+    }
     fn lipschitz(_a: &[f64], x: f64, y: f64) -> f64 {
         x.max(y)
     }
@@ -169,6 +178,10 @@ impl Join for Tongue {
     #[inline(always)]
     fn join<R: Real>(x: R, y: R, a: Args<'_, R>) -> R {
         x.min((x - a.get(0)).max(y.abs() - a.get(1) * 0.5))
+    }
+    fn kept(x: SingleInterval, y: SingleInterval, a: Args<'_, SingleInterval>) -> Kept {
+        let wall = Real::abs(y) - a.get(1) * 0.5;
+        Kept::first_if(Kept::smaller(x, wall, 0.0) == Kept::First)
     }
     fn lipschitz(_a: &[f64], x: f64, y: f64) -> f64 {
         x.max(y)

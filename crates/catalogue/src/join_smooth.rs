@@ -43,6 +43,9 @@ impl Style for Quadratic {
         let k = a.get(0);
         x.min(y) - nearness(x, y, k).sq() * (k * 0.25)
     }
+    fn lower_kept(x: SingleInterval, y: SingleInterval, a: Args<'_, SingleInterval>) -> Kept {
+        Kept::smaller(x, y, a.get(0).hi)
+    }
     fn reach(a: &[f64]) -> f64 {
         0.25 * a[0]
     }
@@ -70,6 +73,9 @@ impl Style for Cubic {
         let k = a.get(0);
         let h = nearness(x, y, k);
         x.min(y) - h.sq() * h * (k * (1.0 / 6.0))
+    }
+    fn lower_kept(x: SingleInterval, y: SingleInterval, a: Args<'_, SingleInterval>) -> Kept {
+        Kept::smaller(x, y, a.get(0).hi)
     }
     fn reach(a: &[f64]) -> f64 {
         a[0] / 6.0
@@ -99,6 +105,9 @@ impl Style for Circular {
         let s = ((x - y).abs() / k).min(1.0);
         let arc = (-s.sq() + 2.0).sqrt();
         x.min(y) - (-(s + arc) * 0.5 + 1.0) * k
+    }
+    fn lower_kept(x: SingleInterval, y: SingleInterval, a: Args<'_, SingleInterval>) -> Kept {
+        Kept::smaller(x, y, a.get(0).hi)
     }
     fn reach(a: &[f64]) -> f64 {
         (1.0 - FRAC_1_SQRT_2) * a[0]

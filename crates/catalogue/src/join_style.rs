@@ -32,6 +32,10 @@ pub trait Style: 'static {
     const SAMPLES: &'static [&'static [f64]];
     /// The joined minimum: symmetric, never above `min(x, y)`, and never more than [`Self::reach`] below it.
     fn lower<R: Real>(x: R, y: R, a: Args<'_, R>) -> R;
+    /// What the joined minimum keeps over a box, see [`Join::kept`]. It is where the minimum is left alone, to the bit.
+    fn lower_kept(_x: SingleInterval, _y: SingleInterval, _a: Args<'_, SingleInterval>) -> Kept {
+        Kept::Both
+    }
     /// Largest `|m_x| Lx + |m_y| Ly`.
     fn lipschitz(_a: &[f64], x: f64, y: f64) -> f64 {
         x.max(y)
@@ -82,7 +86,8 @@ macro_rules! styled {
     ($($join:ident $which:literal |$x:ident, $y:ident, $a:ident| $value:expr;
         |$level:ident, $r:ident, $bx:ident, $by:ident| $bounds:expr;
         |$ix:ident, $iy:ident| $contains:expr;
-        $fold_bounds:expr;)*) => {$(
+        $fold_bounds:expr;
+        |$kx:ident, $ky:ident, $ka:ident| $kept:expr;)*) => {$(
         impl<S: Style> Join for $join<S> {
             const INFO: Info = info::<S>($which);
             const SHARP: bool = false;
@@ -90,6 +95,13 @@ macro_rules! styled {
             #[inline(always)]
             fn join<R: Real>($x: R, $y: R, $a: Args<'_, R>) -> R {
                 $value
+            }
+            fn kept(
+                $kx: SingleInterval,
+                $ky: SingleInterval,
+                $ka: Args<'_, SingleInterval>,
+            ) -> Kept {
+                $kept
             }
             fn lipschitz(a: &[f64], x: f64, y: f64) -> f64 {
                 S::lipschitz(a, x, y)
@@ -130,15 +142,18 @@ styled! {
             let reach = S::fold_reach(a, shapes.len());
             shapes.iter().fold(Aabb::EMPTY, |b, shape| b.hull(&shape.grow(reach)))
         };
+        |x, y, a| S::lower_kept(x, y, a);
     // never below the sharp ones
     StyledIntersection 1 |x, y, a| -S::lower(-x, -y, a);
         |level, _r, x, y| x(level).intersect(&y(level));
         |x, y| x && y;
         |_a, shapes: &[Aabb]| shapes.iter().fold(Aabb::WHOLE, |b, shape| b.intersect(shape));
+        |x, y, a| S::lower_kept(-x, -y, a);
     StyledSubtraction 2 |x, y, a| -S::lower(-x, y, a);
         |level, _r, x, _y| x(level);
         |x, y| x && !y;
         |_a, shapes: &[Aabb]| shapes.first().copied().unwrap_or(Aabb::EMPTY);
+        |x, y, a| S::lower_kept(-x, y, a).with_second_negated();
 }
 
 /// Whether parameter `name` is a whole number.

@@ -24,7 +24,8 @@
 #![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
 use crate::bounds::{Aabb, Exactness};
-use zeroset_number::{Args, Real, Vec2, Vec3, length2, v2, v3};
+use crate::op::Kept;
+use zeroset_number::{Args, Real, SingleInterval, Vec2, Vec3, length2, v2, v3};
 
 pub mod bounds;
 pub mod entries;
@@ -367,6 +368,11 @@ pub trait Join: 'static {
     const SAMPLES: &'static [&'static [f64]] = &[];
     /// The new value from the two.
     fn join<R: Real>(x: R, y: R, a: Args<'_, R>) -> R;
+    /// Which operand is the result, to the bit, wherever the operands lie in these ranges: a part of space where that is known needs no
+    /// more than this one.
+    fn kept(_x: SingleInterval, _y: SingleInterval, _a: Args<'_, SingleInterval>) -> Kept {
+        Kept::Both
+    }
     /// Slope of the result, from the slopes of the two, over all directions in which both may change.
     fn lipschitz(a: &[f64], x: f64, y: f64) -> f64;
     /// A box that holds all places where the result is at most `level`, from boxes of the operands' level sets: `x(l)`

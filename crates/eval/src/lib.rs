@@ -1,7 +1,7 @@
 //! Evaluators: a tape over SIMD batches, with gradients, with marks, and over one point of any number type.
 //!
 //! [`Evaluator`] is the one for most uses: slices of points in, slices of numbers out, at the widest vectors of the machine. [`Point`]
-//! takes one point of any number type; the rest is for renderers that run SIMD code of their own.
+//! takes one point of any number type; a [`Pruner`] finds what is left of a tape in a box; the rest is for renderers that run SIMD code of their own.
 //!
 //! ```
 //! use glam::vec3;
@@ -35,10 +35,12 @@ mod batch;
 mod evaluator;
 mod marks;
 mod point;
+mod prune;
 mod workspace;
 
 pub use batch::{gradients, places, values};
 pub use evaluator::{Evaluator, LengthError};
 pub use marks::marks;
 pub use point::{Point, PointNumber};
+pub use prune::{Pruner, Remains};
 pub use workspace::{BATCH, Lane, Marks, Workspace};

@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 use zeroset_catalogue::op::*;
 use zeroset_catalogue::tape::{Instruction, Operation, Tape};
 use zeroset_catalogue::{each_change, each_leaf, each_pair, each_warp};
-use zeroset_number::{Args, Data, Dual, F64, Interval, Real, Vec3};
+use zeroset_number::{Args, Data, Dual, F64, Interval, Real, SingleInterval, Slope, Vec3};
 
 /// Number types that tapes are evaluated over one point at a time. Their kernels are compiled here and nowhere else.
 pub trait PointNumber: Real<Store = Data> + sealed::Sealed {
@@ -30,7 +30,14 @@ macro_rules! numbers {
         }
     )*};
 }
-numbers!(F64, Interval, Dual<F64>, Dual<Interval>);
+numbers!(
+    F64,
+    Interval,
+    SingleInterval,
+    Slope,
+    Dual<F64>,
+    Dual<Interval>
+);
 #[cfg(feature = "single")]
 numbers!(f32, Dual<f32>);
 
@@ -71,7 +78,7 @@ impl<'t, R: PointNumber> Point<'t, R> {
     }
 }
 
-type PointKernel<R> = fn(&Instruction, &Data, &mut [R]);
+pub(super) type PointKernel<R> = fn(&Instruction, &Data, &mut [R]);
 
 #[inline(always)]
 fn point<R: Real>(registers: &[R], at: u16) -> Vec3<R> {
@@ -111,7 +118,8 @@ fn mark<R: Real>(i: &Instruction, _data: &Data, r: &mut [R]) {
     r[usize::from(i.out)] = r[usize::from(i.a)];
 }
 
-struct PointKernels<R>(PhantomData<R>);
+/// The kernels of a number type, by operation.
+pub(super) struct PointKernels<R>(PhantomData<R>);
 
 macro_rules! leaves { ($($entry:ty,)*) => { &[$(leaf::<R, $entry>),*] }; }
 macro_rules! warps { ($($entry:ty,)*) => { &[$(warp::<R, $entry>),*] }; }
@@ -125,7 +133,7 @@ impl<R: Real<Store = Data> + 'static> PointKernels<R> {
     const PAIRS: &'static [PointKernel<R>] = each_pair!(pairs);
 
     #[inline(always)]
-    fn of(operation: Operation) -> PointKernel<R> {
+    pub(super) fn of(operation: Operation) -> PointKernel<R> {
         match operation {
             Operation::Leaf(code) => Self::LEAVES[usize::from(code)],
             Operation::Warp(code) => Self::WARPS[usize::from(code)],

@@ -105,6 +105,13 @@ impl Workspace {
         self.result_dual = 4 * usize::from(tape.code.result);
     }
 
+    /// Where [`gradients`](crate::gradients) leaves what it finds: the value and the derivatives along x, y and z.
+    pub fn gradients_mut(&mut self) -> &mut [Lane; 4] {
+        (&mut self.duals[self.result_dual..][..4])
+            .try_into()
+            .expect("a result has a value and three derivatives")
+    }
+
     /// What [`gradients`](crate::gradients) found at point number `i`: the value and the derivatives along x, y and z.
     pub fn gradient(&self, i: usize) -> (f32, [f32; 3]) {
         let gradient = self.gradients().each_ref().map(|lane| lane.0[i]);
@@ -168,5 +175,10 @@ impl Workspace {
     /// What [`marks`](crate::marks) found.
     pub fn marks(&self) -> &Marks {
         &self.marks.marks[self.marks.result]
+    }
+
+    /// Where [`marks`](crate::marks) leaves what it finds.
+    pub fn marks_mut(&mut self) -> &mut Marks {
+        &mut self.marks.marks[self.marks.result]
     }
 }

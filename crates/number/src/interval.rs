@@ -4,7 +4,7 @@
 //! `f64` gives for them. An infinite end stands for values without a bound. Where a formula has no value (a division by
 //! zero, the logarithm of a negative number) the range says nothing about that point.
 
-use super::data::Data;
+use super::data::{Data, Grid};
 use super::list::fold_list;
 use super::real::{Ends, Masked, Ops, Real, State, interpolate, steps};
 use super::scalar::F64;
@@ -15,14 +15,21 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 /// Cells of a grid that a range is taken from exactly; over more of them, that of their nodes counts.
 const MOST_CELLS: f64 = 8.0;
 
-/// All numbers from `lo` to `hi`.
+/// All numbers from `lo` to `hi`. `SINGLE`: whether those of single precision are enclosed too.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Interval {
+pub struct IntervalOf<const SINGLE: bool> {
     /// Smallest value; not NaN, and not above `hi`.
     pub lo: f64,
     /// Largest value; not NaN.
     pub hi: f64,
 }
+
+/// A range of the values that a formula takes for real numbers, and of those that `f64` gives.
+pub type Interval = IntervalOf<false>;
+
+/// A range that also encloses what a formula gives in single precision, on any instruction set: every operation is widened by what
+/// `f32` and [`elementary`](crate::elementary) may round, and by what overflows and underflows there.
+pub type SingleInterval = IntervalOf<true>;
 
 /// What a condition may be, over a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -104,9 +111,21 @@ fn largest(ends: [f64; 4]) -> f64 {
     ends.into_iter().fold(f64::NEG_INFINITY, f64::max)
 }
 
-impl Interval {
+/// Half a unit in the last place of single precision, as a share, twice: for the rounding of the ends too.
+const SINGLE_SHARE: f64 = f32::EPSILON as f64;
+/// What single precision may lose below its smallest normal number.
+const SINGLE_TINY: f64 = f32::MIN_POSITIVE as f64;
+/// The largest number of single precision.
+const SINGLE_MAX: f64 = f32::MAX as f64;
+/// What the elementary functions of single precision may be off by, as a share and absolutely; those that are stated are less than a
+/// quarter of it (see [`elementary`](crate::elementary)).
+const SINGLE_LIBRARY: [f64; 2] = [1e-6, 1e-6];
+/// The share for powers.
+const SINGLE_POWER: f64 = 1e-5;
+
+impl<const SINGLE: bool> IntervalOf<SINGLE> {
     /// All numbers.
-    pub const WHOLE: Interval = Interval {
+    pub const WHOLE: Self = IntervalOf {
         lo: f64::NEG_INFINITY,
         hi: f64::INFINITY,
     };
@@ -114,12 +133,12 @@ impl Interval {
     /// The range between two numbers, in any order; NaN stands for no bound.
     pub fn new(a: f64, b: f64) -> Self {
         if a.is_nan() || b.is_nan() {
-            return Interval {
+            return Self {
                 lo: if a.is_nan() { f64::NEG_INFINITY } else { a },
                 hi: if b.is_nan() { f64::INFINITY } else { b },
             };
         }
-        Interval {
+        Self {
             lo: a.min(b),
             hi: a.max(b),
         }
@@ -127,12 +146,12 @@ impl Interval {
 
     /// The number alone.
     pub fn point(x: f64) -> Self {
-        Interval::new(x, x)
+        Self::new(x, x)
     }
 
     /// The smallest range that holds both.
     pub fn hull(self, o: Self) -> Self {
-        Interval {
+        Self {
             lo: self.lo.min(o.lo),
             hi: self.hi.max(o.hi),
         }
@@ -140,7 +159,7 @@ impl Interval {
 
     /// What both hold; self where that is nothing.
     pub(super) fn intersect(self, o: Self) -> Self {
-        let both = Interval {
+        let both = Self {
             lo: self.lo.max(o.lo),
             hi: self.hi.min(o.hi),
         };
@@ -149,10 +168,24 @@ impl Interval {
 
     /// Self, but not outside [`lo`, `hi`].
     pub(super) fn clip(self, lo: f64, hi: f64) -> Self {
-        Interval {
+        Self {
             lo: self.lo.clamp(lo, hi),
             hi: self.hi.clamp(lo, hi),
         }
+    }
+
+    /// The range of a grid's samples at the nodes of a box.
+    fn nodes(grid: &Grid, node: [Self; 3]) -> Self {
+        let range = grid.range(node.map(|c| Interval { lo: c.lo, hi: c.hi }));
+        IntervalOf {
+            lo: range.lo,
+            hi: range.hi,
+        }
+    }
+
+    /// Whether both ends are numbers.
+    pub fn is_finite(self) -> bool {
+        self.lo.is_finite() && self.hi.is_finite()
     }
 
     /// Whether the range holds `x`.
@@ -171,44 +204,80 @@ impl Interval {
 
     /// The ends, rounded outwards once.
     fn rounded(lo: f64, hi: f64) -> Self {
-        Interval {
+        if SINGLE {
+            return IntervalOf { lo, hi }.widened(SINGLE_SHARE, SINGLE_TINY);
+        }
+        IntervalOf {
             lo: down(lo),
             hi: up(hi),
         }
     }
 
+    /// The ends, outwards by a share of them and an absolute number. What single precision cannot hold is infinite there, or the largest
+    /// number that it has.
+    fn widened(self, share: f64, by: f64) -> Self {
+        let (lo, hi) = (down(self.lo), up(self.hi));
+        let lo = down(lo - (lo.abs() * share + by));
+        let hi = up(hi + (hi.abs() * share + by));
+        IntervalOf {
+            lo: if lo < -SINGLE_MAX {
+                f64::NEG_INFINITY
+            } else {
+                lo.min(SINGLE_MAX)
+            },
+            hi: if hi > SINGLE_MAX {
+                f64::INFINITY
+            } else {
+                hi.max(-SINGLE_MAX)
+            },
+        }
+    }
+
+    /// Self, but not outside [`lo`, `hi`], ends that values in single precision may miss by rounding.
+    fn clip_rounded(self, lo: f64, hi: f64) -> Self {
+        if !SINGLE {
+            return self.clip(lo, hi);
+        }
+        let ends = IntervalOf::<true> { lo, hi }.widened(SINGLE_POWER, 0.0);
+        self.clip(ends.lo, ends.hi)
+    }
+
     /// The ends, rounded outwards by what a library function may be off by.
     fn library(lo: f64, hi: f64) -> Self {
-        let mut r = Interval::new(lo, hi);
+        let mut r = Self::new(lo, hi);
+        if SINGLE {
+            let [share, by] = SINGLE_LIBRARY;
+            return r.widened(share, by);
+        }
         for _ in 0..LIBRARY_ULPS {
-            r = Interval::rounded(r.lo, r.hi);
+            r = Self::rounded(r.lo, r.hi);
         }
         r
     }
 
     /// A library function that grows, or that falls.
     fn monotone(self, f: impl Fn(f64) -> f64) -> Self {
-        Interval::library(f(self.lo), f(self.hi))
+        Self::library(f(self.lo), f(self.hi))
     }
 }
 
-impl From<f32> for Interval {
+impl<const SINGLE: bool> From<f32> for IntervalOf<SINGLE> {
     fn from(x: f32) -> Self {
-        Interval::point(x.into())
+        Self::point(x.into())
     }
 }
 
-impl Neg for Interval {
+impl<const SINGLE: bool> Neg for IntervalOf<SINGLE> {
     type Output = Self;
     fn neg(self) -> Self {
-        Interval {
+        Self {
             lo: -self.hi,
             hi: -self.lo,
         }
     }
 }
 
-impl Add for Interval {
+impl<const SINGLE: bool> Add for IntervalOf<SINGLE> {
     type Output = Self;
     fn add(self, o: Self) -> Self {
         // without rounding, so that what is zero stays so
@@ -218,22 +287,22 @@ impl Add for Interval {
         if self.is_zero() {
             return o;
         }
-        Interval::rounded(self.lo + o.lo, self.hi + o.hi)
+        Self::rounded(self.lo + o.lo, self.hi + o.hi)
     }
 }
 
-impl Sub for Interval {
+impl<const SINGLE: bool> Sub for IntervalOf<SINGLE> {
     type Output = Self;
     fn sub(self, o: Self) -> Self {
         self + -o
     }
 }
 
-impl Mul for Interval {
+impl<const SINGLE: bool> Mul for IntervalOf<SINGLE> {
     type Output = Self;
     fn mul(self, o: Self) -> Self {
         if self.is_zero() || o.is_zero() {
-            return Interval::point(0.0);
+            return Self::point(0.0);
         }
         let ends = [
             product(self.lo, o.lo),
@@ -241,73 +310,73 @@ impl Mul for Interval {
             product(self.hi, o.lo),
             product(self.hi, o.hi),
         ];
-        Interval::rounded(smallest(ends), largest(ends))
+        Self::rounded(smallest(ends), largest(ends))
     }
 }
 
-impl Div for Interval {
+impl<const SINGLE: bool> Div for IntervalOf<SINGLE> {
     type Output = Self;
     fn div(self, o: Self) -> Self {
         if o.lo > 0.0 || o.hi < 0.0 {
-            self * Interval::rounded(1.0 / o.hi, 1.0 / o.lo)
+            self * Self::rounded(1.0 / o.hi, 1.0 / o.lo)
         } else if o.lo == 0.0 && o.hi > 0.0 {
-            self * Interval::new(down(1.0 / o.hi), f64::INFINITY)
+            self * Self::new(down(1.0 / o.hi), f64::INFINITY)
         } else if o.hi == 0.0 && o.lo < 0.0 {
-            self * Interval::new(f64::NEG_INFINITY, up(1.0 / o.lo))
+            self * Self::new(f64::NEG_INFINITY, up(1.0 / o.lo))
         } else {
-            Interval::WHOLE
+            Self::WHOLE
         }
     }
 }
 
 macro_rules! literal_arithmetic {
     ($($t:ident $f:ident),*) => {$(
-        impl $t<f32> for Interval {
+        impl<const SINGLE: bool> $t<f32> for IntervalOf<SINGLE> {
             type Output = Self;
             fn $f(self, o: f32) -> Self {
-                $t::$f(self, Interval::from(o))
+                $t::$f(self, Self::from(o))
             }
         }
     )*};
 }
 literal_arithmetic!(Add add, Sub sub, Mul mul, Div div);
 
-impl Masked for Interval {
+impl<const SINGLE: bool> Masked for IntervalOf<SINGLE> {
     type Mask = Maybe;
 }
 
 macro_rules! ops {
     ($($rhs:ty),*) => {$(
-        impl Ops<$rhs> for Interval {
+        impl<const SINGLE: bool> Ops<$rhs> for IntervalOf<SINGLE> {
             fn min(self, o: $rhs) -> Self {
-                let o = Interval::from(o);
-                Interval { lo: self.lo.min(o.lo), hi: self.hi.min(o.hi) }
+                let o = Self::from(o);
+                Self { lo: self.lo.min(o.lo), hi: self.hi.min(o.hi) }
             }
             fn max(self, o: $rhs) -> Self {
-                let o = Interval::from(o);
-                Interval { lo: self.lo.max(o.lo), hi: self.hi.max(o.hi) }
+                let o = Self::from(o);
+                Self { lo: self.lo.max(o.lo), hi: self.hi.max(o.hi) }
             }
             fn below(self, o: $rhs) -> Maybe {
-                let o = Interval::from(o);
+                let o = Self::from(o);
                 Maybe { yes: self.lo < o.hi, no: self.hi >= o.lo }
             }
             fn above(self, o: $rhs) -> Maybe {
-                Interval::from(o).below(self)
+                Self::from(o).below(self)
             }
         }
     )*};
 }
-ops!(Interval, f32);
+ops!(IntervalOf<SINGLE>, f32);
 
-impl State<Interval> for Interval {
+impl<const SINGLE: bool> State<IntervalOf<SINGLE>> for IntervalOf<SINGLE> {
     fn zip(self, o: Self, f: impl Fn(Self, Self) -> Self + Copy) -> Self {
         f(self, o)
     }
 }
 
-impl Real for Interval {
+impl<const SINGLE: bool> Real for IntervalOf<SINGLE> {
     type Base = Self;
-    type Scalar = Interval;
+    type Scalar = Self;
     type Store = Data;
 
     fn param(store: &Data, at: usize) -> Self {
@@ -315,13 +384,13 @@ impl Real for Interval {
     }
     fn fetch(store: &Data, grid: Self, node: Vec3<Self>) -> Self {
         match store.grids.get(grid.lo as usize) {
-            Some(grid) => grid.range(node.array()),
-            None => Interval::WHOLE,
+            Some(grid) => Self::nodes(grid, node.array()),
+            None => Self::WHOLE,
         }
     }
     fn sample(store: &Data, grid: Self, nodes: Vec3<Self>, p: Vec3<Self>) -> Self {
         let Some(samples) = store.grids.get(grid.lo as usize) else {
-            return Interval::WHOLE;
+            return Self::WHOLE;
         };
         let n = samples.nodes().map(f64::from);
         let held = |axis: usize| {
@@ -337,7 +406,10 @@ impl Real for Interval {
             .product();
         if count > MOST_CELLS {
             // what is interpolated never leaves its nodes
-            return samples.range(cells.map(|[first, last]| Interval::new(first, last + 1.0)));
+            return Self::nodes(
+                samples,
+                cells.map(|[first, last]| Self::new(first, last + 1.0)),
+            );
         }
         // in a cell the function is linear along each axis: over a box it is largest and smallest at corners
         let corners = |axis: usize| {
@@ -357,15 +429,15 @@ impl Real for Interval {
             }
         }
         // for the roundings of other number types
-        let hair = 1e-12 * lo.abs().max(hi.abs());
-        Interval::rounded(lo - hair, hi + hair)
+        let hair = if SINGLE { 1e-5 } else { 1e-12 } * lo.abs().max(hi.abs());
+        Self::rounded(lo - hair, hi + hair)
     }
     fn constant(c: f64) -> Self {
         // 3 is meant to be 3, but pi stands for a number beside it
         if f64::from(c as f32) == c {
-            Interval::point(c)
+            Self::point(c)
         } else {
-            Interval::rounded(c, c)
+            Self::rounded(c, c)
         }
     }
     fn like(self, s: Self) -> Self {
@@ -385,7 +457,7 @@ impl Real for Interval {
     }
 
     fn sqrt(self) -> Self {
-        let r = Interval::rounded(self.lo.max(0.0).sqrt(), self.hi.max(0.0).sqrt());
+        let r = Self::rounded(self.lo.max(0.0).sqrt(), self.hi.max(0.0).sqrt());
         r.clip(0.0, f64::INFINITY)
     }
     fn abs(self) -> Self {
@@ -394,14 +466,14 @@ impl Real for Interval {
         } else if self.hi <= 0.0 {
             -self
         } else {
-            Interval {
+            Self {
                 lo: 0.0,
                 hi: self.mag(),
             }
         }
     }
     fn floor(self) -> Self {
-        Interval {
+        Self {
             lo: self.lo.floor(),
             hi: self.hi.floor(),
         }
@@ -419,12 +491,17 @@ impl Real for Interval {
         self.clip(0.0, f64::INFINITY).monotone(f64::ln)
     }
     fn powf(self, k: Self) -> Self {
-        (self.ln() * k).exp()
+        let power = (self.ln() * k).exp();
+        if SINGLE {
+            power.widened(SINGLE_POWER, 0.0).clip(0.0, f64::INFINITY)
+        } else {
+            power
+        }
     }
     fn atan2(self, x: Self) -> Self {
         // the cut, where the angle jumps from pi to -pi, and the origin, where it may be any
         if x.lo <= 0.0 && self.contains(0.0) {
-            return Interval::library(-PI, PI);
+            return Self::library(-PI, PI);
         }
         // elsewhere the angle of a box is largest and smallest at corners
         let ends = [
@@ -433,7 +510,7 @@ impl Real for Interval {
             self.hi.atan2(x.lo),
             self.hi.atan2(x.hi),
         ];
-        Interval::library(smallest(ends), largest(ends))
+        Self::library(smallest(ends), largest(ends))
     }
     fn asin(self) -> Self {
         self.clip(-1.0, 1.0).monotone(f64::asin)
@@ -445,24 +522,24 @@ impl Real for Interval {
         self.monotone(f64::atan)
     }
     fn tanh(self) -> Self {
-        self.monotone(f64::tanh).clip(-1.0, 1.0)
+        self.monotone(f64::tanh).clip_rounded(-1.0, 1.0)
     }
     fn sq(self) -> Self {
         let a = self.abs();
-        Interval::rounded(a.lo * a.lo, a.hi * a.hi).clip(0.0, f64::INFINITY)
+        Self::rounded(a.lo * a.lo, a.hi * a.hi).clip(0.0, f64::INFINITY)
     }
     fn norm<const N: usize>(v: [Self; N]) -> Self {
         let [first, rest @ ..] = v.as_slice() else {
-            return Interval::point(0.0);
+            return Self::point(0.0);
         };
         rest.iter().fold(first.sq(), |s, x| s + x.sq()).sqrt()
     }
     fn unit(self, norm: Self) -> Self {
-        (self / norm.max(1e-18)).clip(-1.0, 1.0)
+        (self / norm.max(1e-18)).clip_rounded(-1.0, 1.0)
     }
     fn sign(self) -> Self {
         let sign = |x: f64| if x < 0.0 { -1.0 } else { 1.0 };
-        Interval {
+        Self {
             lo: sign(self.lo),
             hi: sign(self.hi),
         }
@@ -470,7 +547,7 @@ impl Real for Interval {
     fn fract(self) -> Self {
         let f = self.floor();
         if f.lo < f.hi {
-            Interval { lo: 0.0, hi: 1.0 }
+            Self { lo: 0.0, hi: 1.0 }
         } else {
             (self - f).clip(0.0, 1.0)
         }
@@ -484,20 +561,16 @@ impl Real for Interval {
 
     fn step_slope(self, stepped: Self) -> Self {
         if stepped.lo < stepped.hi {
-            Interval::WHOLE
+            Self::WHOLE
         } else {
-            Interval::point(0.0)
+            Self::point(0.0)
         }
     }
     fn jump_slope(m: Maybe, slope: Self) -> Self {
-        if m.undecided() {
-            Interval::WHOLE
-        } else {
-            slope
-        }
+        if m.undecided() { Self::WHOLE } else { slope }
     }
     fn proven(self, lo: f32, hi: f32, _at: Vec3<Self>, _slope: f32) -> Self {
-        self.clip(lo.into(), hi.into())
+        self.clip_rounded(lo.into(), hi.into())
     }
     fn bounded_slope(p: Vec3<Self>, slope: f32, f: impl Fn(Vec3<Self>) -> Self) -> Self {
         let direct = f(p);
@@ -507,7 +580,7 @@ impl Real for Interval {
         }
     }
     fn whole(self) -> Self {
-        let whole = Interval {
+        let whole = Self {
             lo: self.lo.ceil(),
             hi: self.hi.floor(),
         };
@@ -523,7 +596,7 @@ impl Real for Interval {
         // `s` is what may still run, `done` gathers what may have left
         let (mut s, mut done): (T, Option<T>) = (init, None);
         let join = |done: Option<T>, s: T| match done {
-            Some(d) => d.zip(s, Interval::hull),
+            Some(d) => d.zip(s, Self::hull),
             None => s,
         };
         let sure = steps(limit.lo);
@@ -558,43 +631,49 @@ impl Real for Interval {
 }
 
 /// A function between -1 and 1 of period 2 pi whose maxima lie at `peak` and whole periods from it.
-fn wave(x: Interval, f: impl Fn(f64) -> f64, peak: f64) -> Interval {
+fn wave<const SINGLE: bool>(
+    x: IntervalOf<SINGLE>,
+    f: impl Fn(f64) -> f64,
+    peak: f64,
+) -> IntervalOf<SINGLE> {
     let narrow = x.hi - x.lo < TAU && x.mag() < 1e9;
     if !narrow {
-        return Interval { lo: -1.0, hi: 1.0 };
+        return IntervalOf { lo: -1.0, hi: 1.0 }.clip_rounded(-1.0, 1.0);
     }
     // whether a number `at + 2 pi n` lies in the range, or within a hair of it
     let hair = 1e-6;
     let holds = |at: f64| ((x.hi - at + hair) / TAU).floor() >= ((x.lo - at - hair) / TAU).ceil();
-    let mut r = Interval::library(f(x.lo), f(x.hi)).clip(-1.0, 1.0);
+    let mut r = IntervalOf::library(f(x.lo), f(x.hi)).clip_rounded(-1.0, 1.0);
+    let whole = IntervalOf::<SINGLE> { lo: -1.0, hi: 1.0 }.clip_rounded(-1.0, 1.0);
     if holds(peak + PI) {
-        r.lo = -1.0;
+        r.lo = whole.lo;
     }
     if holds(peak) {
-        r.hi = 1.0;
+        r.hi = whole.hi;
     }
     r
 }
 
-fn modulo(x: Interval, c: Interval) -> Interval {
+fn modulo<const SINGLE: bool>(x: IntervalOf<SINGLE>, c: IntervalOf<SINGLE>) -> IntervalOf<SINGLE> {
     let n = (x / c).floor();
     if n.lo == n.hi {
         return x - n * c;
     }
     // by rounding the result may lie outside [0, c] by a hair
-    let hair = 4.0 * f64::EPSILON * (x.mag() + c.mag());
-    Interval::rounded(c.lo.min(0.0) - hair, c.hi.max(0.0) + hair)
+    let epsilon = if SINGLE { SINGLE_SHARE } else { f64::EPSILON };
+    let hair = 4.0 * epsilon * (x.mag() + c.mag());
+    IntervalOf::rounded(c.lo.min(0.0) - hair, c.hi.max(0.0) + hair)
 }
 
 /// What a function of slope at most `slope` may be in the box `p`, from its range at the box's centre. None for an unbounded
 /// box.
-pub(super) fn around(
-    p: Vec3<Interval>,
+pub(super) fn around<const SINGLE: bool>(
+    p: Vec3<IntervalOf<SINGLE>>,
     slope: f32,
-    at_centre: impl FnOnce(Vec3<Interval>) -> Interval,
-) -> Option<Interval> {
+    at_centre: impl FnOnce(Vec3<IntervalOf<SINGLE>>) -> IntervalOf<SINGLE>,
+) -> Option<IntervalOf<SINGLE>> {
     let centre = p.map(|c| 0.5 * (c.lo + c.hi));
-    let away = |c: Interval, m: f64| up(c.hi - m).max(up(m - c.lo));
+    let away = |c: IntervalOf<SINGLE>, m: f64| up(c.hi - m).max(up(m - c.lo));
     let reach = up(away(p.x, centre.x)
         .hypot(away(p.y, centre.y))
         .hypot(away(p.z, centre.z)));
@@ -602,8 +681,14 @@ pub(super) fn around(
     if !by.is_finite() {
         return None;
     }
-    let v = at_centre(centre.map(Interval::point));
-    // for the roundings of the formula's values elsewhere in the box
-    let hair = 1e-12 * (by + v.mag());
-    Some(Interval::rounded(v.lo - by - hair, v.hi + by + hair))
+    let v = at_centre(centre.map(IntervalOf::point));
+    // for the roundings of the formula's values elsewhere in the box: in single precision those of distances, which are some parts of
+    // the coordinates that they are made of
+    let hair = if SINGLE {
+        let size = p.array().into_iter().fold(0.0, |s, c| c.mag().max(s));
+        2e-5 * (by + v.mag() + size)
+    } else {
+        1e-12 * (by + v.mag())
+    };
+    Some(IntervalOf::rounded(v.lo - by - hair, v.hi + by + hair))
 }

@@ -6,7 +6,7 @@
 //! | --- | --- |
 //! | `f32`, [`F64`] | the value at one point; `f64` is the reference |
 //! | [`Lanes`] | the values at 4 to 16 points at once |
-//! | [`Interval`] | a proven range over a box |
+//! | [`Interval`], [`SingleInterval`] | a proven range over a box: of real numbers, of what single precision gives too |
 //! | [`Dual`] of any of them | value and gradient |
 //! | [`Slope`] | a proven Lipschitz constant over a box |
 //! | [`Expr`] | the formula itself as data, which [`wgsl`] prints for GPUs |
@@ -73,7 +73,7 @@ pub use data::{Data, Grid, GridError};
 pub use dual::Dual;
 pub use expr::Expr;
 pub use hash::{Hash, hash1, hash2, hash3};
-pub use interval::Interval;
+pub use interval::{Interval, IntervalOf, SingleInterval};
 pub use lanes::Lanes;
 pub use real::{Ends, MOST_STEPS, Masked, Ops, Real, State, Truth, differ, inlined, length2};
 pub use record::{Argument, Function, RecordError, Recorder};

@@ -367,7 +367,7 @@ fn cross<S: Simd>(
         for (k, (open, edge)) in batch.iter().enumerate() {
             put(work, k, &pixels.ray(open.pixel, open.middle), edge.at);
         }
-        zeroset_eval::gradients(s, pixels.solid.program.values(), work, batch.len());
+        pixels.solid.gradients(s, work, batch.len());
         evaluations += batch.len() as u64;
         for (k, (open, passed)) in batch.iter().enumerate() {
             let sign = if passed.inside { -1.0 } else { 1.0 };
@@ -435,7 +435,7 @@ fn follow<S: Simd>(
                     let t = load(s, &rows.t, i) + load(s, &rows.z, i).abs();
                     store3(along(ray.origin, ray.direction, t), points, i);
                 }
-                zeroset_eval::values(s, solid.program.values(), work, rows.count);
+                solid.values(s, work, rows.count);
                 evaluations += rows.count as u64;
                 advance(s, solid, &queue.common, iteration, cones, work);
                 iteration += 1;

@@ -6,6 +6,7 @@
 //! of its derivative along the ray, which needs fewer and fewer parts the shorter they are.
 
 use zeroset_catalogue::bounds::Exactness;
+use zeroset_cells::Cells;
 use zeroset_eval::Point;
 use zeroset_field::program::Program;
 use zeroset_number::{Dual, F64, Interval, Vec3, v3};
@@ -68,6 +69,7 @@ struct Segment {
 /// A search's memory.
 pub(crate) struct Isolation<'p> {
     program: &'p Program,
+    cells: Option<&'p Cells>,
     ranges: Point<'p, Interval>,
     slopes: Point<'p, Dual<Interval>>,
     values: Point<'p, F64>,
@@ -81,9 +83,10 @@ pub(crate) struct Isolation<'p> {
 }
 
 impl<'p> Isolation<'p> {
-    pub(crate) fn new(program: &'p Program) -> Self {
+    pub(crate) fn new(program: &'p Program, cells: Option<&'p Cells>) -> Self {
         Isolation {
             program,
+            cells,
             ranges: Point::new(program.values()),
             slopes: Point::new(program.values()),
             values: Point::new(program.values()),
@@ -102,7 +105,13 @@ impl<'p> Isolation<'p> {
 
     fn value(&mut self, line: &Line, t: f64) -> f64 {
         self.evaluations += 1;
-        line.sided(self.values.value(line.at(t)).0)
+        let at = line.at(t);
+        // which cells there are makes no value another one, but it does ranges
+        let value = match self.cells {
+            Some(cells) => Point::<F64>::new(cells.tape_near(at.array().map(|c| c.0))).value(at),
+            None => self.values.value(at),
+        };
+        line.sided(value.0)
     }
 
     /// The place between one that is not behind the surface and one that is.

@@ -129,7 +129,7 @@ impl<'a> Job<'a> {
         stop: &Stop<'_>,
     ) -> Done {
         let solid = Solid::new(
-            &self.picture.program,
+            self.picture.field(),
             self.picture.region,
             &self.view,
             self.picture.scene.settings().max_steps,
@@ -291,7 +291,11 @@ impl<'a> Job<'a> {
         std::mem::swap(&mut q.queue.spans, &mut q.next);
         let [within, marked] = [&self.picture.inside, &self.picture.inside_marks].map(|program| {
             let program = program.as_ref()?;
-            Some(Solid { program, ..*solid })
+            Some(Solid {
+                program,
+                cells: None,
+                ..*solid
+            })
         });
         while !solid.stop.is_set()
             && let Some(inside) = q.paths.next(solid, &mut q.queue)

@@ -190,7 +190,7 @@ fn begin<S: Simd, M: Marcher>(
     rays.count += new.count;
 }
 
-/// Evaluates the field at the next place of every ray.
+/// Finds how far it is free around the next place of every ray.
 #[inline(always)]
 fn sample<S: Simd>(s: S, solid: &Solid<'_>, common: &Common, rays: &Rays, work: &mut Workspace) {
     let points = work.points_mut();
@@ -199,7 +199,7 @@ fn sample<S: Simd>(s: S, solid: &Solid<'_>, common: &Common, rays: &Rays, work: 
         let t = load(s, &rays.t, i) + load(s, &rays.z, i).abs();
         store3(along(ray.origin, ray.direction, t), points, i);
     }
-    zeroset_eval::values(s, solid.program.values(), work, rays.count);
+    solid.clearances(s, work, rays.count);
 }
 
 /// Moves every ray on, and takes those out that arrived or left.

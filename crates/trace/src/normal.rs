@@ -118,18 +118,20 @@ fn refine<S: Simd>(s: S, solid: &Solid<'_>, k: usize, n: usize, q: &mut Scratch)
         rounds += 1;
         let round = rounds;
         let hits = &q.hits;
-        values_at(
-            s,
-            solid,
-            n,
-            &mut q.work,
-            #[inline(always)]
-            |i| {
-                let ray = hits.ray(s, k + i);
-                let t = load(s, &hits.t, k + i) + guess(s, hits, k + i, round);
-                along(ray.origin, ray.direction, t)
-            },
-        );
+        if !solid.stop.before(n) {
+            fill(
+                n,
+                &mut q.work,
+                #[inline(always)]
+                |i| {
+                    let ray = hits.ray(s, k + i);
+                    let t = load(s, &hits.t, k + i) + guess(s, hits, k + i, round);
+                    along(ray.origin, ray.direction, t)
+                },
+            );
+            // as the rays were marched
+            solid.clearances(s, &mut q.work, n);
+        }
         q.counts.march += n as u64;
         count = 0;
         for i in (0..n).step_by(S::f32s::LEN) {
@@ -215,7 +217,7 @@ fn refine_rest<S: Simd>(
                 column.0[j] = x;
             }
         }
-        zeroset_eval::values(s, solid.program.values(), &mut q.work, count);
+        solid.clearances(s, &mut q.work, count);
         q.counts.march += count as u64;
         let mut kept = 0;
         for j in 0..count {
@@ -251,7 +253,7 @@ pub(crate) fn values_at<S: Simd>(
         return;
     }
     fill(n, work, point);
-    zeroset_eval::values(s, solid.program.values(), work, n);
+    solid.values(s, work, n);
 }
 
 /// What is shown as the distance to the surface, at `n` points that are made by vectors: the value of the field where it is
@@ -276,7 +278,7 @@ pub(crate) fn sample<S: Simd>(
 /// The second kind of [`sample`], where the points are there already.
 #[inline(always)]
 pub(crate) fn distances<S: Simd>(s: S, solid: &Solid<'_>, n: usize, work: &mut Workspace) {
-    zeroset_eval::gradients(s, solid.program.values(), work, n);
+    solid.gradients(s, work, n);
     for i in (0..n).step_by(S::f32s::LEN) {
         let f = load(s, &work.gradient_values().0, i);
         let slope = load3(s, work.gradients(), i).length();
@@ -374,7 +376,7 @@ fn by_gradients<S: Simd>(s: S, solid: &Solid<'_>, q: &mut Scratch) {
                             along(load3(s, &hits.point, k + i), d, -by)
                         },
                     );
-                    zeroset_eval::gradients(s, solid.program.values(), &mut q.work, n);
+                    solid.gradients(s, &mut q.work, n);
                     q.counts.normal += n as u64;
                     let mut any = false;
                     for i in (0..n).step_by(S::f32s::LEN) {

@@ -273,7 +273,7 @@ impl Query<'_> {
         let instructions = picture.program.structure().values.instructions.len();
         let stop = Stop::new(&Silent, &never, instructions);
         let solid = Solid::new(
-            &picture.program,
+            picture.field(),
             picture.region,
             &self.view,
             picture.scene.settings().max_steps,

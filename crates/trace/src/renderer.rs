@@ -12,7 +12,9 @@ use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
 use web_time::Instant;
+use zeroset_catalogue::bounds::Aabb;
 use zeroset_catalogue::tape::Operation;
+use zeroset_cells::Cells;
 use zeroset_field::program::{Limits, Program};
 use zeroset_number::at_level;
 use zeroset_scene::accumulator::{self, Accumulator, Sum};
@@ -137,6 +139,8 @@ pub struct PreparedScene {
     pub(crate) renderer: CpuRenderer,
     pub(crate) scene: Arc<Scene>,
     pub(crate) program: Program,
+    /// Its cells, where it is worth while.
+    cells: Option<Arc<Cells>>,
     /// The same for rays inside clear bodies, where there are opaque ones too.
     pub(crate) inside: Option<Program>,
     /// See [`Program::inside_marks`].
@@ -175,11 +179,13 @@ pub struct PreparedScene {
 impl PreparedScene {
     fn new(renderer: CpuRenderer, scene: Arc<Scene>) -> Result<PreparedScene, RenderError> {
         let (program, region) = compiled(&scene, &renderer.limits)?;
+        let cells = cells_of(&scene, &program);
         let environment = EnvironmentMap::renewed(None, &scene);
         Ok(PreparedScene::of(
             renderer,
             scene,
             program,
+            cells,
             region,
             environment,
         ))
@@ -189,6 +195,7 @@ impl PreparedScene {
         renderer: CpuRenderer,
         scene: Arc<Scene>,
         program: Program,
+        cells: Option<Arc<Cells>>,
         region: Region,
         environment: Option<Arc<EnvironmentMap>>,
     ) -> PreparedScene {
@@ -236,6 +243,7 @@ impl PreparedScene {
             inside: program.inside(),
             inside_marks: program.inside_marks(),
             program,
+            cells,
             region,
             material: only(&materials),
             object: only(&objects),
@@ -278,6 +286,24 @@ impl PreparedScene {
     /// What the scene compiled to.
     pub fn program(&self) -> &Program {
         &self.program
+    }
+
+    /// The cells of its program, where there are any: see [`Cells::new`].
+    pub fn cells(&self) -> Option<&Cells> {
+        self.cells.as_deref()
+    }
+
+    /// The scene without cells: the same picture, slower or, where they were not worth while, as fast.
+    pub fn without_cells(self) -> PreparedScene {
+        PreparedScene {
+            cells: None,
+            ..self
+        }
+    }
+
+    /// What is marched.
+    pub(crate) fn field(&self) -> (&Program, Option<&Cells>) {
+        (&self.program, self.cells())
     }
 
     /// Renders as the scene's own camera and settings say, but for the size, until the observer ends it.
@@ -346,16 +372,18 @@ impl PreparedScene {
 
 impl Prepared for PreparedScene {
     fn update(&mut self, scene: Arc<Scene>) -> Result<(), RenderError> {
-        let (program, region) = if scene.has_field_of(&self.scene) {
-            (self.program.clone(), self.region)
+        let (program, cells, region) = if scene.has_field_of(&self.scene) {
+            (self.program.clone(), self.cells.clone(), self.region)
         } else {
-            compiled(&scene, &self.renderer.limits)?
+            let (program, region) = compiled(&scene, &self.renderer.limits)?;
+            let cells = cells_of(&scene, &program);
+            (program, cells, region)
         };
         let spare = std::mem::take(&mut self.spare);
         let fits = program.structure() == self.program.structure();
         let environment = EnvironmentMap::renewed(self.environment.as_ref(), &scene);
         let renderer = self.renderer.clone();
-        *self = PreparedScene::of(renderer, scene, program, region, environment);
+        *self = PreparedScene::of(renderer, scene, program, cells, region, environment);
         if fits {
             self.spare = spare;
         }
@@ -406,6 +434,15 @@ impl Prepared for PreparedScene {
             Err(RenderError::Cancelled)
         }
     }
+}
+
+/// The cells of a scene's program, around all objects that have an end.
+fn cells_of(scene: &Scene, program: &Program) -> Option<Arc<Cells>> {
+    let boxes = scene.objects().iter().map(|o| o.field.facts().bounds);
+    let around = boxes
+        .filter(|b| b.is_finite() && !b.is_empty())
+        .fold(Aabb::EMPTY, |all, b| all.hull(&b));
+    Cells::new(program, around).map(Arc::new)
 }
 
 /// Rows of sums that tiles beside each other add to.

@@ -339,7 +339,7 @@ fn sample<S: Simd>(s: S, common: Option<[f32; 3]>, solid: &Solid<'_>, q: &mut Ra
         store3(at, points, i);
     }
     if solid.close {
-        zeroset_eval::values(s, solid.program.values(), q.work, rays.count);
+        solid.values(s, q.work, rays.count);
     } else {
         distances(s, solid, rays.count, q.work);
     }

@@ -235,7 +235,7 @@ pub(crate) fn marks<S: Simd>(s: S, solid: &Solid<'_>, q: &mut Scratch) {
                 column.0[i] = x[k + i] - normal[k + i] * behind.0[i];
             }
         }
-        zeroset_eval::marks(s, solid.program.marks(), &mut q.work, n);
+        solid.marks(s, &mut q.work, n);
         q.counts.material += n as u64;
         let marks = q.work.marks();
         q.hits.object[k..k + n].copy_from_slice(&marks.object.0[..n]);

@@ -13,6 +13,7 @@ use crate::simd::{Row, SLACK, Sheet, TILE_RAYS, WordRow, WordSheet};
 use crate::stop::Stop;
 use crate::surface::MaterialColumns;
 use fearless_simd::Simd;
+use zeroset_cells::Cells;
 use zeroset_eval::Workspace;
 use zeroset_field::program::Program;
 use zeroset_number::{Lanes, Real, Vec3, v3};
@@ -26,6 +27,9 @@ pub(crate) const WIDTH: usize = 64;
 pub(crate) const HEIGHT: usize = 32;
 /// Samples are spread over tiles.
 const _: () = assert!(WIDTH as u32 == CELL[0] && HEIGHT as u32 == CELL[1]);
+
+/// Where cells know the slopes of a field, rays may take so many times more steps than by distances.
+const PATIENCE: u32 = 4;
 
 /// What a tile covers.
 #[derive(Clone, Copy, Debug)]
@@ -63,6 +67,8 @@ impl Area {
 /// What is marched: a field with what its box and the picture say of it.
 pub(crate) struct Solid<'a> {
     pub(crate) program: &'a Program,
+    /// What is left of the program in parts of space, where that is worth while.
+    pub(crate) cells: Option<&'a Cells>,
     pub(crate) region: Region,
     pub(crate) view: &'a View,
     /// Evaluations that a ray may take.
@@ -82,7 +88,7 @@ pub(crate) struct Solid<'a> {
 impl<'a> Solid<'a> {
     /// `max_steps` of a field whose value is the distance; one that is less gets more of them. `samples`: rays a pixel.
     pub(crate) fn new(
-        program: &'a Program,
+        (program, cells): (&'a Program, Option<&'a Cells>),
         region: Region,
         view: &'a View,
         max_steps: u32,
@@ -92,9 +98,15 @@ impl<'a> Solid<'a> {
     ) -> Solid<'a> {
         Solid {
             program,
+            cells,
             region,
             view,
-            max_steps: program.patient(max_steps).min(ITERATIONS),
+            max_steps: match cells {
+                // by slopes that hold where a ray is, it gets along as by distances
+                Some(cells) if cells.has_slopes() => max_steps.saturating_mul(PATIENCE),
+                _ => program.patient(max_steps),
+            }
+            .min(ITERATIONS),
             fractal: program.is_fractal(),
             close: program.is_close(),
             skins,
@@ -105,6 +117,42 @@ impl<'a> Solid<'a> {
 }
 
 impl Solid<'_> {
+    /// Finds the values of the field at the first `n` points of the workspace: as [`zeroset_eval::values`], to the bit, by cells where
+    /// there are any. With [`Solid::gradients`] and [`Solid::marks`] the one way in to the field.
+    #[inline(always)]
+    pub(crate) fn values<S: Simd>(&self, s: S, work: &mut Workspace, n: usize) {
+        match self.cells {
+            Some(cells) => cells.values(s, work, n),
+            None => zeroset_eval::values(s, self.program.values(), work, n),
+        }
+    }
+
+    /// How far around each point the field keeps its sign, and on which side of the surface it is: the values, where the field changes by no
+    /// more than 1 a unit, or more than that where cells know how steep it is.
+    #[inline(always)]
+    pub(crate) fn clearances<S: Simd>(&self, s: S, work: &mut Workspace, n: usize) {
+        self.values(s, work, n);
+        if let Some(cells) = self.cells {
+            cells.widen(work, n);
+        }
+    }
+
+    /// As [`zeroset_eval::gradients`].
+    pub(crate) fn gradients<S: Simd>(&self, s: S, work: &mut Workspace, n: usize) {
+        match self.cells {
+            Some(cells) => cells.gradients(s, work, n),
+            None => zeroset_eval::gradients(s, self.program.values(), work, n),
+        }
+    }
+
+    /// As [`zeroset_eval::marks`].
+    pub(crate) fn marks<S: Simd>(&self, s: S, work: &mut Workspace, n: usize) {
+        match self.cells {
+            Some(cells) => cells.marks(s, work, n),
+            None => zeroset_eval::marks(s, self.program.marks(), work, n),
+        }
+    }
+
     /// The radius of the footprint at the distance `t` of a ray.
     #[inline(always)]
     pub(crate) fn near<R: Real<Scalar = f32>>(&self, ray: &WideRay<R>, t: R) -> R {

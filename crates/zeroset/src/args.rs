@@ -473,11 +473,13 @@ pub(crate) enum Measure {
     March(Measured),
     /// Render pictures by the stream renderer and by the plain one, at equal threads
     Frame(MeasuredFrame),
+    /// Render pictures with cells, which hold what is left of a field in a part of space, and without
+    Cells(Measured),
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct Measured {
-    /// The scene. Default: three joined solids over a floor (eval), a city of boxes (march)
+    /// The scene. Default: three joined solids over a floor (eval), a city of boxes (march), a molecule (cells)
     #[arg(value_name = "SCENE", value_hint = ValueHint::FilePath)]
     pub scene: Option<PathBuf>,
     /// Print as JSON

@@ -1,9 +1,11 @@
 //! What a few looks at a field tell of a scene: whether the camera stands in a solid, how loose a bound is, what single
 //! precision still tells apart.
 
+use std::collections::HashSet;
 use zeroset_catalogue::bounds::Aabb;
 use zeroset_eval::Point;
-use zeroset_field::field::Field;
+use zeroset_field::field::{Field, Node};
+use zeroset_field::formula::Formula;
 use zeroset_field::program::{Limits, Program};
 use zeroset_number::{Dual, F64, Vec3, v3};
 use zeroset_scene::camera::Camera;
@@ -85,6 +87,77 @@ pub(crate) fn looseness(field: &Field) -> Option<f64> {
     Some(1.0 / median)
 }
 
+/// A stated slope that is exceeded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Exceeded {
+    /// What was stated (1, where less was).
+    pub stated: f64,
+    /// A gradient that is longer.
+    pub found: f64,
+    /// Where it is, in the formula's own coordinates.
+    pub at: [f64; 3],
+}
+
+/// Where a stated slope of a formula in the field is exceeded, if it is anywhere that a search finds: the worst of all formulas.
+pub(crate) fn exceeded(field: &Field) -> Option<Exceeded> {
+    let (mut seen, mut open) = (HashSet::new(), vec![field]);
+    let mut worst: Option<Exceeded> = None;
+    while let Some(field) = open.pop() {
+        if !seen.insert(field.key()) {
+            continue;
+        }
+        open.extend(field.children());
+        let Node::Formula(formula) = field.node() else {
+            continue;
+        };
+        if formula.is_proven() {
+            continue;
+        }
+        let (found, at) = steepest(formula);
+        let stated = formula.slope();
+        // a hair more may be the rounding of the statement
+        let is_worse = worst.is_none_or(|w| found / stated > w.found / w.stated);
+        if found > stated * (1.0 + 1e-6) && is_worse {
+            worst = Some(Exceeded { stated, found, at });
+        }
+    }
+    worst
+}
+
+/// The longest gradient of a formula that is found uphill from the longest one known (compass search; Hooke and Jeeves 1961).
+fn steepest(formula: &Formula) -> (f64, [f64; 3]) {
+    let bounds = formula.bounds();
+    let length = |p: [f64; 3]| {
+        let d = formula.eval(Dual::point(at(p))).d;
+        d.iter().map(|x| x.0 * x.0).sum::<f64>().sqrt()
+    };
+    let (mut best, mut place) = (formula.steepest(), formula.steepest_at());
+    let looks = (CLIMB / formula.steps().len().max(1)).min(600);
+    let mut step = 0.125;
+    for _ in 0..looks / 6 {
+        let mut better = None;
+        for k in 0..3 {
+            for sign in [-1.0, 1.0] {
+                let mut p = place;
+                let side = bounds.max[k] - bounds.min[k];
+                p[k] = (p[k] + sign * step * side).clamp(bounds.min[k], bounds.max[k]);
+                let there = length(p);
+                if there.is_finite() && there > better.map_or(best, |(length, _)| length) {
+                    better = Some((there, p));
+                }
+            }
+        }
+        match better {
+            Some(found) => (best, place) = found,
+            None => step *= 0.5,
+        }
+    }
+    (best, place)
+}
+
+/// Steps of formulas that such a search may take.
+const CLIMB: usize = 4_000_000;
+
 /// Powers of the inverse of the root of x^7 = x + 1.
 const SEQUENCE: [f64; 6] = [
     0.898_654_7,
@@ -147,6 +220,27 @@ mod tests {
         assert!((loose - 30.0).abs() < 0.1, "{loose}");
         let exact = scene("show(sphere(1))");
         assert_eq!(looseness(&exact.objects()[0].field), None);
+    }
+
+    #[test]
+    fn a_stated_slope_that_is_too_low_is_found_out() {
+        // a wave of slope 1 + 20 cos(20 x), steepest at x = 0
+        let wave = |slope: &str| {
+            let text = format!(
+                "show(field(lambda p: p.y + sin(p.x * 20) * 0.95, size = 2, slope = {slope}).move(x = 5))"
+            );
+            exceeded(&scene(&text).objects()[0].field)
+        };
+        let found = wave("3").expect("an exceeded slope");
+        let steepest = 1.0_f64.hypot(19.0);
+        assert!((found.found - steepest).abs() < 1e-3, "{found:?}");
+        // where the cosine is 1 or -1
+        let turns = found.at[0] * 20.0 / std::f64::consts::PI;
+        assert!((turns - turns.round()).abs() < 0.02, "{found:?}");
+        assert_eq!(found.stated, 3.0);
+        assert_eq!(wave("19.1"), None);
+        let proven = scene("show(field(lambda p: length(p) - 1, size = 4))");
+        assert_eq!(exceeded(&proven.objects()[0].field), None);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The arithmetic of free-form formulas, one operation each.
 
-use super::{Change, Leaf, Pair};
-use zeroset_number::{Args, Real, Vec3, length2};
+use super::{Change, Kept, Leaf, Pair};
+use zeroset_number::{Args, Real, SingleInterval, Vec3, length2};
 
 /// A function of one number. Angles are radians.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -179,11 +179,18 @@ unary! {
 }
 
 macro_rules! binary {
-    ($($(#[$doc:meta])* $name:ident |$x:ident, $y:ident| $value:expr;)*) => {
+    ($($(#[$doc:meta])* $name:ident |$x:ident, $y:ident| $value:expr $(, keeps $kept:expr)?;)*) => {
         $(
             $(#[$doc])*
             pub struct $name;
             impl Pair for $name {
+                $(fn kept(
+                    x: SingleInterval,
+                    y: SingleInterval,
+                    _a: Args<'_, SingleInterval>,
+                ) -> Kept {
+                    $kept(x, y)
+                })?
                 #[inline(always)]
                 fn pair<R: Real>($x: R, $y: R, _a: Args<'_, R>) -> R {
                     $value
@@ -213,9 +220,9 @@ binary! {
     /// `x / y`
     Div |x, y| x / y;
     /// The smaller.
-    Min |x, y| x.min(y);
+    Min |x, y| x.min(y), keeps |x, y| Kept::smaller(x, y, 0.0);
     /// The larger.
-    Max |x, y| x.max(y);
+    Max |x, y| x.max(y), keeps |x: SingleInterval, y: SingleInterval| Kept::smaller(-x, -y, 0.0);
     /// `x - y floor(x / y)`
     Modulo |x, y| x.modulo(y);
     /// `x^y` of `x`, which counts as no less than [`TINY`].

@@ -2,7 +2,7 @@
 
 use super::{Change, Warp};
 use zeroset_number::hash::Hash;
-use zeroset_number::{Args, Real, Vec3, length2, v3};
+use zeroset_number::{Args, Ops, Real, SingleInterval, Vec3, length2, v3};
 
 /// `p - a`
 pub struct Offset;
@@ -31,7 +31,15 @@ impl Warp for Rigid {
 /// The point of a box (smallest corner, largest corner) that is nearest to `p`.
 pub struct Clamp;
 
+/// Whether a box lies within another one, whose corners are parameters.
+fn within(p: Vec3<SingleInterval>, a: Args<'_, SingleInterval>) -> bool {
+    (p.array().iter().enumerate()).all(|(k, c)| a.get(k).hi < c.lo && c.hi < a.get(k + 3).lo)
+}
+
 impl Warp for Clamp {
+    fn keeps(p: Vec3<SingleInterval>, a: Args<'_, SingleInterval>) -> bool {
+        within(p, a)
+    }
     #[inline(always)]
     fn warp<R: Real>(p: Vec3<R>, a: Args<'_, R>) -> Vec3<R> {
         v3(
@@ -73,6 +81,15 @@ pub struct Continue;
 
 impl Change for Continue {
     const READS_POINT: bool = true;
+    /// Where the box of the field is left alone, but for the place where it cuts the solid.
+    fn keeps(d: SingleInterval, p: Vec3<SingleInterval>, a: Args<'_, SingleInterval>) -> bool {
+        let sides = p.array().into_iter().enumerate();
+        let depth = sides
+            .map(|(k, c)| Ops::min(c - a.get(k), -(c - a.get(k + 3))))
+            .fold(SingleInterval::point(f64::from(FAR)), Ops::min)
+            * a.get(6);
+        within(p, a) && d.is_finite() && -depth.lo < d.lo && d.hi < f64::from(FAR)
+    }
     #[inline(always)]
     fn change<R: Real>(d: R, p: Vec3<R>, a: Args<'_, R>) -> R {
         let apart = R::norm([away(p.x, a, 0), away(p.y, a, 1), away(p.z, a, 2)]);

@@ -7,7 +7,7 @@
 
 use crate::{Join, Map, Modify, Primitive};
 use std::marker::PhantomData;
-use zeroset_number::{Args, Real, Vec3};
+use zeroset_number::{Args, Real, SingleInterval, Vec3};
 
 pub mod arithmetic;
 pub mod domain;
@@ -26,8 +26,67 @@ pub trait Leaf: 'static {
     }
 }
 
+/// Over a box: which operand a join gives, to the bit, with its gradient and its marks, wherever in the box it is evaluated in single
+/// precision.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kept {
+    /// Both count somewhere, or that cannot be told.
+    Both,
+    /// The first.
+    First,
+    /// The second.
+    Second,
+    /// The negation of the second.
+    MinusSecond,
+}
+
+impl Kept {
+    /// What the smaller of two numbers keeps that are in these ranges; and so does a join that leaves the minimum alone where its operands
+    /// are more than `support` apart.
+    ///
+    /// The ranges must be finite: where single precision has no number, as for 0 / 0, a range is not.
+    pub fn smaller(x: SingleInterval, y: SingleInterval, support: f64) -> Kept {
+        if !(x.is_finite() && y.is_finite()) {
+            return Kept::Both;
+        }
+        // for the roundings within the join
+        let by = support
+            + 1e-6
+                * (support
+                    + if support > 0.0 {
+                        x.mag() + y.mag()
+                    } else {
+                        0.0
+                    });
+        if x.hi < y.lo - by {
+            Kept::First
+        } else if y.hi < x.lo - by {
+            Kept::Second
+        } else {
+            Kept::Both
+        }
+    }
+
+    /// The first operand, if `first` holds.
+    pub fn first_if(first: bool) -> Kept {
+        if first { Kept::First } else { Kept::Both }
+    }
+
+    /// For a subtraction, which negates its second operand.
+    pub fn with_second_negated(self) -> Kept {
+        match self {
+            Kept::Second => Kept::MinusSecond,
+            kept => kept,
+        }
+    }
+}
+
 /// A point in, a point out.
 pub trait Warp: 'static {
+    /// Whether the result is the point itself, to the bit and with its gradient, in all of the box.
+    fn keeps(_p: Vec3<SingleInterval>, _a: Args<'_, SingleInterval>) -> bool {
+        false
+    }
     /// The formula.
     fn warp<R: Real>(p: Vec3<R>, a: Args<'_, R>) -> Vec3<R>;
 }
@@ -36,12 +95,20 @@ pub trait Warp: 'static {
 pub trait Change: 'static {
     /// Whether the formula reads the point. What does not read it does not keep it alive either.
     const READS_POINT: bool = false;
+    /// Whether the result is the value itself, to the bit and with its gradient, in all of the box.
+    fn keeps(_d: SingleInterval, _p: Vec3<SingleInterval>, _a: Args<'_, SingleInterval>) -> bool {
+        false
+    }
     /// The formula.
     fn change<R: Real>(d: R, p: Vec3<R>, a: Args<'_, R>) -> R;
 }
 
 /// Two values in, a value out.
 pub trait Pair: 'static {
+    /// Which operand is the result in all of the box.
+    fn kept(_x: SingleInterval, _y: SingleInterval, _a: Args<'_, SingleInterval>) -> Kept {
+        Kept::Both
+    }
     /// The formula.
     fn pair<R: Real>(x: R, y: R, a: Args<'_, R>) -> R;
 }
@@ -78,6 +145,9 @@ impl<E: Modify> Change for E {
 }
 
 impl<E: Join> Pair for E {
+    fn kept(x: SingleInterval, y: SingleInterval, a: Args<'_, SingleInterval>) -> Kept {
+        E::kept(x, y, a)
+    }
     #[inline(always)]
     fn pair<R: Real>(x: R, y: R, a: Args<'_, R>) -> R {
         E::join(x, y, a)

@@ -1,10 +1,12 @@
 //! Intervals enclose what `f64` gives at every point of the box.
 
+use crate::support::levels;
 use crate::tree::{Binary, Place, Tree, number, place, tree};
+use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
-use zeroset_number::{Args, Data, Ends, F64, Interval, Ops, Real, Vec3, v3};
+use zeroset_number::{Args, Data, Ends, F64, Interval, Lanes, Ops, Real, SingleInterval, Vec3, v3};
 
 /// A point whose value is not in `range`.
 fn miss(tree: &Tree, place: &Place, range: Interval) -> Option<String> {
@@ -14,8 +16,48 @@ fn miss(tree: &Tree, place: &Place, range: Interval) -> Option<String> {
     })
 }
 
+/// The formula at a point in single precision, unless something on the way is no finite number.
+fn in_lanes(tree: &Tree, level: Level, p: [f32; 3]) -> Option<f32> {
+    fn run<S: Simd>(s: S, tree: &Tree, p: [f32; 3]) -> Option<f32> {
+        let [x, y, z] = p.map(|x| Lanes(S::f32s::splat(s, x)));
+        let mut finite = true;
+        let value = tree.eval(v3(x, y, z), &mut |x: Lanes<S>| {
+            finite &= x.0.as_slice()[0].is_finite();
+        });
+        finite.then_some(value.0.as_slice()[0])
+    }
+    dispatch!(level, s => run(s, tree, p))
+}
+
+/// A value of single precision that is not in its range over the box around the points.
+fn single_miss(tree: &Tree, place: &Place, share: f64) -> Option<String> {
+    let points: Vec<[f32; 3]> = place.points().map(|p| p.map(|x| x as f32)).collect();
+    let side = |k: usize| {
+        let ends = points.iter().map(|p| f64::from(p[k]));
+        let lo = ends.clone().fold(f64::INFINITY, f64::min);
+        SingleInterval::new(lo, ends.fold(f64::NEG_INFINITY, f64::max))
+    };
+    let mut range = tree.eval(v3(side(0), side(1), side(2)), &mut |_| {});
+    range.lo += share * (range.hi - range.lo);
+    for (name, level) in levels() {
+        for p in &points {
+            if let Some(value) = in_lanes(tree, level, *p)
+                && !range.contains(value.into())
+            {
+                return Some(format!("{name}: {value:e} at {p:?} is not in {range:?}"));
+            }
+        }
+    }
+    None
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(3000))]
+
+    #[test]
+    fn single_precision_stays_in_its_range(tree in tree(), place in place()) {
+        prop_assert_eq!(single_miss(&tree, &place, 0.0), None);
+    }
 
     #[test]
     fn formulas_stay_in_their_range(tree in tree(), place in place()) {
@@ -61,6 +103,18 @@ fn a_range_without_its_ends_is_noticed() {
         noticed > 100,
         "{noticed} of 400 ranges that are a tenth short were noticed"
     );
+}
+
+#[test]
+fn a_range_of_single_precision_without_its_ends_is_noticed() {
+    let mut runner = TestRunner::deterministic();
+    let noticed = (0..400).filter(|_| {
+        let tree = tree().new_tree(&mut runner).map(|t| t.current());
+        let place = place().new_tree(&mut runner).map(|p| p.current());
+        matches!((tree, place), (Ok(tree), Ok(place)) if single_miss(&tree, &place, 0.1).is_some())
+    });
+    let noticed = noticed.count();
+    assert!(noticed > 100, "{noticed} of 400");
 }
 
 fn at(tree: Tree, x: (f64, f64), y: (f64, f64)) -> Interval {

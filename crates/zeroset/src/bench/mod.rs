@@ -1,5 +1,6 @@
 //! `zeroset bench`: how fast it is, as ratios of what was measured in one run.
 
+mod cells;
 mod eval;
 mod frame;
 #[cfg(feature = "gpu")]
@@ -60,6 +61,18 @@ pub(crate) fn run(args: &BenchArgs, console: &Console) -> Result<(), Failure> {
                 found.ns_per_point_scalar,
                 found.simd_over_scalar,
             ))
+        }
+        Measure::Cells(what) => {
+            let scene = match &what.scene {
+                Some(path) => loaded(path)?,
+                None => trace::bench::molecule(),
+            };
+            let found = cells::cells(&scene).map_err(failed)?;
+            console.emit(&if what.json {
+                json::line(&found)?
+            } else {
+                found.text()
+            })
         }
         Measure::March(what) => {
             let scene = match &what.scene {

@@ -65,8 +65,20 @@ struct ObjectFinding {
     nodes: u64,
     /// What its distance rests on without a proof.
     unproven: Vec<String>,
+    /// Where a slope that was stated by hand is exceeded.
+    exceeded: Option<ExceededFinding>,
     /// How many times less than the distance the marched value is near its surface, where that is not about one.
     looseness: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct ExceededFinding {
+    /// The slope that was stated.
+    stated: f64,
+    /// The length of the gradient that was found.
+    found: f64,
+    /// Where, in the coordinates of the formula.
+    at: [f64; 3],
 }
 
 /// Checks a scene, and says what is known about it.
@@ -109,6 +121,11 @@ fn findings(loaded: &Loaded, program: Option<&Program>, cost: Cost) -> Findings 
                 bounds: corners(&facts.bounds),
                 nodes: facts.nodes,
                 unproven: unproven(&object.field),
+                exceeded: survey::exceeded(&object.field).map(|e| ExceededFinding {
+                    stated: e.stated,
+                    found: e.found,
+                    at: e.at,
+                }),
                 looseness: survey::looseness(&object.field).filter(|loose| *loose > LOOSE),
             }
         })
@@ -257,10 +274,22 @@ fn words(findings: &Findings) -> String {
         );
     }
     for o in &findings.objects {
+        if let Some(e) = &o.exceeded {
+            let _ = writeln!(
+                out,
+                "Too low: the slope of {} that is stated for a formula of {} is exceeded: at ({}) its gradient is {} long. Rays may pass \
+                 the surface there. State `slope = {}` or more, or leave `slope` out, so that it is proven.",
+                digits(e.stated, 4),
+                name(&o.name),
+                e.at.map(|x| digits(x, 4)).join(", "),
+                digits(e.found, 4),
+                digits(e.found * 1.02, 3),
+            );
+        }
         if let Some(loose) = o.looseness {
             let _ = writeln!(
                 out,
-                "Loose: the slope that {} is divided by is {} times that of its surface. The picture is the same; rays take about \
+                "Loose: the slope that {} is divided by is {} times that of its surface. The picture is the same; rays take up to \
                  that many more steps. A smaller `slope = ...` that still holds, a smaller `size`, or a formula nearer to a distance is \
                  faster.",
                 name(&o.name),

@@ -1,0 +1,229 @@
+//! One cell: a box with its tapes, and its eight parts as soon as somebody looks there.
+
+use crate::Cut;
+use std::sync::{Arc, OnceLock};
+use zeroset_catalogue::tape::{Code, Instruction, Tape};
+use zeroset_eval::{Point, Pruner};
+use zeroset_number::{Data, Interval, SingleInterval, Slope, v3};
+
+/// Tapes of so few instructions are not made shorter: finding the cell of a point costs as much.
+const SHORT: usize = 8;
+/// A tape that has lost less than one in this many of its instructions is as long as before.
+const SHARE: usize = 8;
+/// So many cuts may be made in vain.
+const PATIENCE: u8 = 2;
+
+/// What is known in a cell with a slope holds so far around it, in its sides: who is near its border can go on.
+const MARGIN: f32 = 0.5;
+/// A slope that is more than this share of the one before is no better.
+const FLATTER: f32 = 0.9;
+
+/// What is asked of a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Side {
+    /// Its value and its gradient.
+    Values,
+    /// Its marks.
+    Marks,
+}
+
+/// A box that is closed below and open above, so that every point lies in one part of it.
+pub(crate) struct Cell {
+    min: [f32; 3],
+    max: [f32; 3],
+    centre: [f32; 3],
+    values: Arc<Code>,
+    /// Made where marks are asked for.
+    marks: OnceLock<Arc<Code>>,
+    /// What its tape and its slope hold for, beyond its sides.
+    margin: f32,
+    /// How far the sign stays for each unit of the value, within the margin: one over the slope. 1 where no slope is known.
+    free: f32,
+    /// Cuts that have not made the tape shorter, nor the slope less.
+    vain: u8,
+    /// None in a cell that is not cut. The inner one is none where there was no room for the part when it was first asked for.
+    parts: Option<Box<Parts>>,
+}
+
+type Parts = [OnceLock<Option<Box<Cell>>>; 8];
+
+/// Bytes of a cell without its tapes, at most.
+pub(crate) const LARGEST: usize = size_of::<Cell>() + size_of::<Parts>();
+
+/// Bytes of a tape.
+pub(crate) fn bytes(code: &Code) -> usize {
+    size_of::<Code>() + code.instructions.len() * size_of::<Instruction>()
+}
+
+impl Cell {
+    /// A cell in which all of a program is left. One of an empty box holds no point.
+    pub(crate) fn whole(
+        min: [f32; 3],
+        max: [f32; 3],
+        values: &Arc<Code>,
+        marks: &Arc<Code>,
+    ) -> Cell {
+        let cut = min[0] < max[0];
+        Cell {
+            min,
+            max,
+            centre: middle(min, max),
+            values: Arc::clone(values),
+            marks: OnceLock::from(Arc::clone(marks)),
+            margin: 0.0,
+            free: 1.0,
+            vain: 0,
+            parts: cut.then(Box::default),
+        }
+    }
+
+    pub(crate) fn values(&self) -> &Code {
+        &self.values
+    }
+
+    /// The tape for marks, where it was asked for.
+    pub(crate) fn marks(&self) -> Option<&Code> {
+        self.marks.get().map(|code| &**code)
+    }
+
+    #[inline(always)]
+    pub(crate) fn holds(&self, p: [f32; 3]) -> bool {
+        (p[0] >= self.min[0] && p[0] < self.max[0])
+            && (p[1] >= self.min[1] && p[1] < self.max[1])
+            && (p[2] >= self.min[2] && p[2] < self.max[2])
+    }
+
+    /// Whether it holds a point of more precise numbers.
+    pub(crate) fn holds_near(&self, p: [f64; 3]) -> bool {
+        (0..3).all(|k| f64::from(self.min[k]) <= p[k] && p[k] <= f64::from(self.max[k]))
+    }
+
+    /// The part around such a point of it, if somebody has made it.
+    pub(crate) fn part_near(&self, p: [f64; 3]) -> Option<&Cell> {
+        let parts = self.parts.as_ref()?;
+        let bit = |k: usize| usize::from(p[k] >= f64::from(self.centre[k])) << k;
+        parts[bit(0) | bit(1) | bit(2)].get()?.as_deref()
+    }
+
+    /// The part around a point of it; `make` makes it where nobody has yet.
+    #[inline]
+    pub(crate) fn child(
+        &self,
+        p: [f32; 3],
+        make: impl FnOnce(&Cell, usize) -> Option<Cell>,
+    ) -> Option<&Cell> {
+        let parts = self.parts.as_ref()?;
+        let bit = |k: usize| usize::from(p[k] >= self.centre[k]) << k;
+        let part = bit(0) | bit(1) | bit(2);
+        let made = parts[part].get_or_init(|| make(self, part).map(Box::new));
+        made.as_deref()
+    }
+
+    /// Part number `part`: a bit for each axis, set for the upper half.
+    pub(crate) fn part(&self, part: usize, data: &Data, cut: &Cut) -> Cell {
+        let (mut min, mut max) = (self.min, self.max);
+        for k in 0..3 {
+            let half = if part >> k & 1 == 1 {
+                &mut min
+            } else {
+                &mut max
+            };
+            half[k] = self.centre[k];
+        }
+        let side = max[0] - min[0];
+        let margin = if cut.slopes { MARGIN * side } else { 0.0 };
+        let (values, is_shorter) = pruned(&self.values, data, min, max, margin);
+        let free = if cut.slopes {
+            free(&values, data, min, max, margin).max(self.free)
+        } else {
+            1.0
+        };
+        let is_better = is_shorter || free * FLATTER > self.free;
+        let vain = match is_better || side > cut.coarse {
+            true => 0,
+            false => self.vain + 1,
+        };
+        let is_long = values.instructions.len() > SHORT || cut.slopes;
+        let is_cut = is_long && vain < PATIENCE && side > cut.finest;
+        Cell {
+            min,
+            max,
+            centre: middle(min, max),
+            values,
+            marks: OnceLock::new(),
+            margin,
+            free,
+            vain,
+            parts: is_cut.then(Box::default),
+        }
+    }
+
+    /// Makes the tape for marks from that of the cell that this is a part of.
+    pub(crate) fn prune_marks(&self, parent: &Cell, data: &Data, pay: impl FnOnce(usize)) {
+        self.marks.get_or_init(|| {
+            let marks = (parent.marks.get()).expect("who looks for marks comes from above");
+            let (code, _) = pruned(marks, data, self.min, self.max, self.margin);
+            if !Arc::ptr_eq(&code, marks) {
+                pay(bytes(&code));
+            }
+            code
+        });
+    }
+
+    /// How far around a point of it the field keeps its sign, where its value is `f`; with the sign of `f`.
+    pub(crate) fn widen(&self, p: [f32; 3], f: f32) -> f32 {
+        let inside = |k: usize| (p[k] - self.min[k]).min(self.max[k] - p[k]);
+        // a hair less, for the roundings of the sides
+        let border = (self.margin + inside(0).min(inside(1)).min(inside(2))) * 0.999;
+        let free = (f.abs() * self.free).min(border);
+        free.max(f.abs()).copysign(f)
+    }
+
+    /// Bytes of it, as a part of another one.
+    pub(crate) fn size(&self, parent: &Cell) -> usize {
+        let parts = self.parts.as_ref().map_or(0, |_| size_of::<Parts>());
+        let tape = if Arc::ptr_eq(&self.values, &parent.values) {
+            0
+        } else {
+            bytes(&self.values)
+        };
+        size_of::<Cell>() + parts + tape
+    }
+}
+
+fn middle(min: [f32; 3], max: [f32; 3]) -> [f32; 3] {
+    std::array::from_fn(|k| 0.5 * (min[k] + max[k]))
+}
+
+/// One over the Lipschitz constant of a tape in a box, a hair less; 1 where it is not known to be below 1.
+fn free(code: &Code, data: &Data, min: [f32; 3], max: [f32; 3], margin: f32) -> f32 {
+    let side = |k: usize| Interval::new((min[k] - margin).into(), (max[k] + margin).into());
+    let within = Slope::point(v3(side(0), side(1), side(2)));
+    let slope = Point::<Slope>::new(Tape { code, data }).value(within).l;
+    // also where it is infinite
+    if slope < 1.0 {
+        ((1.0 - 1e-5) / slope.max(1e-9)) as f32
+    } else {
+        1.0
+    }
+}
+
+/// What is left of a tape in a box and the margin around it, and whether that is much less.
+fn pruned(
+    code: &Arc<Code>,
+    data: &Data,
+    min: [f32; 3],
+    max: [f32; 3],
+    margin: f32,
+) -> (Arc<Code>, bool) {
+    let side = |k: usize| SingleInterval::new((min[k] - margin).into(), (max[k] + margin).into());
+    let within = v3(side(0), side(1), side(2));
+    let before = code.instructions.len();
+    match Pruner::new().prune(Tape { code, data }, within).code {
+        Some(left) => {
+            let is_shorter = (before - left.instructions.len()) * SHARE > before;
+            (Arc::new(left), is_shorter)
+        }
+        None => (Arc::clone(code), false),
+    }
+}
