@@ -30,7 +30,7 @@ struct Lowered {
 
 impl Lowered {
     fn gives_point(&self) -> bool {
-        matches!(self.operation, Operation::Warp(_))
+        matches!(self.operation, Operation::Warp(_) | Operation::Put(_))
     }
 }
 
@@ -53,10 +53,15 @@ struct Lowering<'l> {
 }
 
 pub(crate) fn compile(field: &Field, limits: &Limits) -> Result<Program, CompileError> {
-    let facts = field.facts();
-    if facts.dimension == Dimension::Two {
+    if field.facts().dimension == Dimension::Two {
         return Err(CompileError::Flat);
     }
+    compile_any(field, limits)
+}
+
+/// Compiles a field, be it a plane shape.
+pub(crate) fn compile_any(field: &Field, limits: &Limits) -> Result<Program, CompileError> {
+    let facts = field.facts();
     let mut l = Lowering {
         steps: Vec::new(),
         params: Vec::new(),
@@ -393,8 +398,17 @@ impl Lowering<'_> {
     fn formula(&mut self, formula: &Formula, point: u32) -> Result<u32, CompileError> {
         let sides = sides(&formula.bounds());
         let inside = self.warp(code::CLAMP, point, &sides)?;
-        let mut values = Vec::with_capacity(formula.steps().len());
+        let mut values: Vec<u32> = Vec::with_capacity(formula.steps().len());
+        // values that depend on a painted field, whose marks they keep
+        let mut painted: Vec<bool> = Vec::with_capacity(formula.steps().len());
         for step in formula.steps() {
+            let depends = step.operands().any(|i| painted[i as usize]);
+            painted.push(match *step {
+                FormulaStep::Field(i, _) => {
+                    formula.fields()[i as usize].field().facts().materials > 0
+                }
+                _ => depends,
+            });
             values.push(match *step {
                 FormulaStep::Coordinate(k) => {
                     self.leaf(code::COORDINATE + u16::from(k), inside, &[])?
@@ -404,7 +418,21 @@ impl Lowering<'_> {
                     self.change(code::unary(f), values[x as usize], inside, &[])?
                 }
                 FormulaStep::Binary(f, x, y) => {
-                    self.pair(code::binary(f), values[x as usize], values[y as usize], &[])?
+                    let value =
+                        self.pair(code::binary(f), values[x as usize], values[y as usize], &[])?;
+                    match (painted[x as usize], painted[y as usize]) {
+                        (true, false) => self.replaced(values[x as usize], value, inside)?,
+                        (false, true) => self.replaced(values[y as usize], value, inside)?,
+                        _ => value,
+                    }
+                }
+                FormulaStep::Noise(kind, q) => {
+                    let q = self.point(formula, q, &values, inside)?;
+                    self.leaf(code::noise(kind), q, &[])?
+                }
+                FormulaStep::Field(i, q) => {
+                    let q = self.point(formula, q, &values, inside)?;
+                    self.field(formula.fields()[i as usize].field(), q)?
                 }
             });
         }
@@ -418,6 +446,30 @@ impl Lowering<'_> {
             point,
             &[&sides[..], &[formula.slope()]].concat(),
         )
+    }
+
+    /// The point that three steps of a formula are; `inside` is where the formula is evaluated.
+    fn point(
+        &mut self,
+        formula: &Formula,
+        q: [u32; 3],
+        values: &[u32],
+        inside: u32,
+    ) -> Result<u32, CompileError> {
+        let mut point = inside;
+        for (k, step) in (0..3).zip(q) {
+            if formula.steps()[step as usize] != FormulaStep::Coordinate(k as u8) {
+                let value = values[step as usize];
+                point = self.emit(Operation::Put(k), value, point, &[])?;
+            }
+        }
+        Ok(point)
+    }
+
+    /// A value with the marks of another one.
+    fn replaced(&mut self, marked: u32, value: u32, inside: u32) -> Result<u32, CompileError> {
+        let point = self.emit(Operation::Put(0), value, inside, &[])?;
+        self.change(code::REPLACED, marked, point, &[])
     }
 
     fn sampled(&mut self, sampled: &Sampled, point: u32) -> Result<u32, CompileError> {

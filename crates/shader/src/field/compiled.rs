@@ -58,7 +58,7 @@ impl<'s> Printer<'s> {
             return "p".into();
         };
         match self.steps[i].operation {
-            Operation::Warp(_) => format!("p{i}"),
+            Operation::Warp(_) | Operation::Put(_) => format!("p{i}"),
             // a marked value is the value
             Operation::Mark(..) => self.name(self.steps[i].a),
             _ => format!("d{i}"),
@@ -70,7 +70,7 @@ impl<'s> Printer<'s> {
         let step = &self.steps[i];
         let (point, operands) = match step.operation {
             Operation::Leaf(_) | Operation::Warp(_) => (Some(step.a), vec![step.a]),
-            Operation::Change(_) => (Some(step.b), vec![step.a, step.b]),
+            Operation::Put(_) | Operation::Change(_) => (Some(step.b), vec![step.a, step.b]),
             Operation::Pair(_) => (None, vec![step.a, step.b]),
             Operation::Mark(..) => return,
         };
@@ -107,6 +107,8 @@ impl Needed {
             if needed.marks[i] && plain[i].is_none() {
                 match step.operation {
                     Operation::Leaf(_) | Operation::Warp(_) => set(&mut needed.values, step.a),
+                    // a point has no marks
+                    Operation::Put(_) => {}
                     Operation::Change(_) | Operation::Mark(..) => set(&mut needed.marks, step.a),
                     Operation::Pair(_) => {
                         for operand in [step.a, step.b] {
@@ -118,7 +120,10 @@ impl Needed {
             }
             if needed.values[i] {
                 set(&mut needed.values, step.a);
-                if matches!(step.operation, Operation::Change(_) | Operation::Pair(_)) {
+                if matches!(
+                    step.operation,
+                    Operation::Put(_) | Operation::Change(_) | Operation::Pair(_)
+                ) {
                     set(&mut needed.values, step.b);
                 }
             }
@@ -163,7 +168,7 @@ fn marks(functions: &mut Functions, steps: &[Step], result: Operand) -> String {
             }
             Operation::Mark(0, number) => format!("mark_material({}, {number}.0)", of(step.a)),
             Operation::Mark(_, number) => format!("mark_object({}, {number}.0)", of(step.a)),
-            Operation::Warp(_) | Operation::Change(_) => continue,
+            Operation::Warp(_) | Operation::Put(_) | Operation::Change(_) => continue,
         };
         printer.line(&format!("m{i}"), &value);
     }
