@@ -22,6 +22,8 @@ pub struct Options {
     pub size: Option<[u32; 2]>,
     /// What the scene may cost.
     pub limits: Limits,
+    /// Whether only what the file itself shows is wanted: a scene that says nothing but what is shown gets no stage.
+    pub bare: bool,
 }
 
 /// A scene with what loading found out.

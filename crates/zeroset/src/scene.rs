@@ -35,6 +35,7 @@ pub(crate) fn options(args: &SceneArgs, size: Option<[u32; 2]>) -> Result<Option
         time: args.time,
         size,
         limits,
+        bare: false,
     })
 }
 

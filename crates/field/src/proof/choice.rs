@@ -6,7 +6,7 @@
 
 use crate::formula::{Binary, FormulaStep, Unary};
 use std::collections::HashMap;
-use zeroset_catalogue::op::arithmetic;
+use zeroset_catalogue::op::arithmetic::{self, NOTHING};
 use zeroset_number::F64;
 
 /// A choice: the step of its condition, of the value where it holds, of the one where it does not.
@@ -352,8 +352,11 @@ impl<'s> Terms<'s> {
             (Binary::Hypot, Some(0.0), _) => return self.unary(Unary::Abs, y),
             (Binary::Hypot, _, Some(0.0)) => return self.unary(Unary::Abs, x),
             (Binary::Either, ..) if x == y => return x,
-            // a choice whose condition is known
+            // a choice whose condition is known; where it flips as well, its own values agree or it jumps by itself
             (Binary::When, Some(c), _) if c > 0.5 => return y,
+            (Binary::When, Some(_), _) => return self.number(f64::from(NOTHING)),
+            (Binary::Either, Some(x), _) if x >= f64::from(NOTHING) => return y,
+            (Binary::Either, _, Some(y)) if y >= f64::from(NOTHING) => return x,
             _ => {}
         }
         if x == y {

@@ -273,6 +273,15 @@ impl Reader {
                 .collect::<Read<Vec<Object>>>()
         })?;
         draft.objects = objects.unwrap_or_default();
+        let written = map.get("objects").and_then(Value::as_array);
+        draft.plain = (written
+            .into_iter()
+            .flatten()
+            .zip(&draft.objects)
+            .enumerate())
+        .filter(|(_, (v, o))| v.get("material").is_none() && o.field.facts().materials == 0)
+        .map(|(i, _)| i)
+        .collect();
         if let Some(files) = self.files.take() {
             draft.files = files;
         }

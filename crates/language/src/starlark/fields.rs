@@ -56,7 +56,7 @@ pub(crate) fn synonymous_methods() -> impl Iterator<Item = super::Word> {
             name,
             kind: "method",
             doc: "Another name of smooth_union as a method: a.blend(b, radius = 0.2).",
-            group: "Placement",
+            group: entry.info.group,
             params: vec![
                 ("other", "", "The other field."),
                 (radius.name, "0.25", radius.doc),

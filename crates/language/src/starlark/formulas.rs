@@ -316,7 +316,7 @@ pub(crate) fn found(c: &mut Call<'_, '_>, of: &Aabb, flat: bool, steps: &Steps) 
         ));
     }
     let reach = axes.clone().map(|k| of.half()[k]).fold(0.0, f64::max);
-    let mut around = of.grow(reach.max(1e-6));
+    let mut around = of.grow((3.0 * reach).max(1e-6));
     if flat {
         (around.min[2], around.max[2]) = (-LARGE, LARGE);
     }
@@ -328,7 +328,7 @@ pub(crate) fn found(c: &mut Call<'_, '_>, of: &Aabb, flat: bool, steps: &Steps) 
             let m = mistake(format!(
                 "how far the result of {}() reaches could not be found: at least {} from the shape's box",
                 c.name,
-                super::native::spoken(reach)
+                super::native::spoken(3.0 * reach)
             ));
             return Err(m.help("state a box that holds it: bounds = ((-5, -5, -5), (5, 5, 5))"));
         }
@@ -584,6 +584,11 @@ impl<'a> Machine<'a> {
             [Some(p), Some(axis), Some(theta)] => (p, Some(axis), theta),
             _ => return Err(wrong()),
         };
+        if matches!(p.value, Value::Thing(i) if matches!(self.store.thing(i), Thing::Field(_))) {
+            return Err(mistake("rotate() turns vectors of formulas, and this is a field")
+                .help("shape.turn(y = 30) or shape.turn(axis = (1, 1, 0), angle = 30), in degrees")
+                .at(p.place));
+        }
         let builder = self.formula_of([p.value, theta.value]);
         let plain = builder.is_none();
         let builder = builder.unwrap_or_default();

@@ -97,7 +97,7 @@ pub const SYNONYMS: &[Synonym] = &[
     says(&["ball", "sdSphere", "uv_sphere"], "sphere(radius = 1)"),
     says(&["sdTorus", "donut"], "torus(radius = 0.75, tube = 0.25)"),
     says(
-        &["sdCylinder", "sdCappedCylinder", "rod", "tube"],
+        &["sdCylinder", "sdCappedCylinder", "rod"],
         "cylinder(radius = 0.5, height = 2), upright along y",
     ),
     says(
