@@ -17,9 +17,9 @@ use zeroset_scene::settings::Shadow;
 
 /// What objects without a material have in turn, linear: terracotta, teal, sand, plum, moss.
 const COLOURS: [Vec3; 5] = [
-    Vec3::new(0.72, 0.19, 0.10),
-    Vec3::new(0.06, 0.30, 0.32),
-    Vec3::new(0.76, 0.46, 0.13),
+    Vec3::new(0.62, 0.13, 0.06),
+    Vec3::new(0.03, 0.24, 0.27),
+    Vec3::new(0.72, 0.40, 0.08),
     Vec3::new(0.29, 0.10, 0.24),
     Vec3::new(0.22, 0.34, 0.10),
 ];
@@ -79,7 +79,7 @@ impl Draft {
             // the fill: cool and weak, from the left
             light([0.9, -0.35, -0.55], [0.10, 0.12, 0.15], Shadow::None),
             // the rim: from behind
-            light([0.35, -0.55, 1.0], [0.32, 0.34, 0.38], Shadow::None),
+            light([0.35, -0.55, 1.0], [0.24, 0.26, 0.30], Shadow::None),
         ]);
         self.sky = Some(Sky {
             top: Vec3::new(0.50, 0.58, 0.68),

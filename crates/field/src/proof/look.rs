@@ -106,7 +106,7 @@ pub(crate) fn cut(
 /// A box that holds all places of `bounds` where the formula may be 0 or below, as small as a short search finds it: cells that
 /// are cut away where the formula is above 0.
 pub(crate) fn reach(tape: &ProofTape, bounds: &Aabb) -> Aabb {
-    const WORK: u64 = 400_000;
+    const WORK: u64 = 200_000;
     let whole = Cell::of(bounds);
     let (mut jets, mut values) = (Vec::new(), Vec::new());
     let last = tape.steps().len() - 1;

@@ -239,7 +239,8 @@ impl ProofTape {
     pub(crate) fn work(&self) -> u64 {
         let of = |step: &FormulaStep| match *step {
             FormulaStep::Field(i, _) => 4 * self.fields[i as usize].instructions() as u64,
-            FormulaStep::Noise(..) => 40,
+            // eight corners or 27 cells, each with its range and gradient
+            FormulaStep::Noise(..) => 500,
             _ => 1,
         };
         self.steps.iter().map(of).sum::<u64>().max(1)

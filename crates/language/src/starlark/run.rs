@@ -23,6 +23,9 @@ pub(crate) enum Flow {
     Return(Value),
 }
 
+/// Bytes that a value counts as which a function gives back where a condition holds.
+const PENDING: usize = 64;
+
 /// A condition.
 enum Decided {
     /// The same for all points.
@@ -161,10 +164,12 @@ impl<'a> Machine<'a> {
         match (first, second?) {
             (Flow::Return(a), Flow::Return(b)) => self.chosen(condition, a, b).map(Flow::Return),
             (Flow::Return(a), Flow::Next) => {
+                self.grow(PENDING)?;
                 self.pending.push((condition.clone(), a));
                 Ok(Flow::Next)
             }
             (Flow::Next, Flow::Return(b)) => {
+                self.grow(PENDING)?;
                 self.frames[frame].values = values;
                 self.pending.push((other, b));
                 Ok(Flow::Next)

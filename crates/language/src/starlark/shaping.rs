@@ -523,7 +523,7 @@ fn cone(a: DVec3, b: DVec3, r: f64, s: f64) -> Result<Field, FieldError> {
     let upright = shape("round_cone", vec![r, s, length])?;
     let y = way / length;
     let x = y.any_orthonormal_vector();
-    upright.place(placed(DMat3::from_cols(x, y, x.cross(y)), a))
+    upright.place(placed(DMat3::from_cols(x, y, x.cross(y)), 0.5 * (a + b)))
 }
 
 /// A turn, then a move.
