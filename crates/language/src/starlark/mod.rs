@@ -84,9 +84,10 @@ fn natives() -> impl Iterator<Item = &'static Native> {
     .flatten()
 }
 
-/// Whether a function of this crate that stands alone has this name.
+/// Whether a function that stands alone has this name: one of this crate, a shape, a join.
 pub(crate) fn is_native(name: &str) -> bool {
-    natives().any(|n| n.name == name) || catalogue().join(name).is_some()
+    let all = catalogue();
+    natives().any(|n| n.name == name) || all.join(name).is_some() || all.primitive(name).is_some()
 }
 
 /// Every name that is there without being defined.
