@@ -10,6 +10,8 @@ pub enum Operation {
     Leaf(u16),
     /// A point in, a point out.
     Warp(u16),
+    /// A value and a point in, the point out with its coordinate of this number replaced by the value.
+    Put(u16),
     /// A value and a point in, a value out.
     Change(u16),
     /// Two values in, a value out.
@@ -28,7 +30,7 @@ pub struct Instruction {
     pub out: u16,
     /// First operand: a point for a leaf or a warp, otherwise a value.
     pub a: u16,
-    /// Second operand: the point of a change (register 0 where it is not read), the second value of a pair.
+    /// Second operand: the point of a change (register 0 where it is not read) or of a put, the second value of a pair.
     pub b: u16,
     /// Where its parameters begin.
     pub at: u32,

@@ -6,7 +6,7 @@ use std::marker::PhantomData;
 use std::ops::Range;
 use zeroset_catalogue::op::*;
 use zeroset_catalogue::tape::{Instruction, Operation, Tape};
-use zeroset_catalogue::{each_change, each_leaf, each_pair, each_warp};
+use zeroset_catalogue::{each_change, each_leaf, each_pair, each_put, each_warp};
 use zeroset_number::{Args, Data, Dual, Lanes, Real, Vec3, v3};
 
 /// Evaluates a tape at the first `n` points of the workspace (at most [`BATCH`]). `n` is rounded up to the width of the SIMD level,
@@ -180,6 +180,34 @@ fn warp<S: Simd, N: Slot<S>, E: Warp>(
 }
 
 #[inline(never)]
+fn put<S: Simd, N: Slot<S>, E: Put>(
+    s: S,
+    i: &Instruction,
+    _data: &Data,
+    lanes: &mut [Lane],
+    n: usize,
+) {
+    let w = N::WIDTH;
+    let spans = [
+        span::<S, N>(i.out, 3),
+        span::<S, N>(i.a, 1),
+        span::<S, N>(i.b, 3),
+    ];
+    let [out, d, p] = split(lanes, spans);
+    s.vectorize(
+        #[inline(always)]
+        || {
+            for k in (0..n.min(BATCH)).step_by(S::f32s::LEN) {
+                let q = E::put(N::load(s, d, k), load3::<S, N>(s, p, k));
+                q.x.store(&mut out[..w], k);
+                q.y.store(&mut out[w..2 * w], k);
+                q.z.store(&mut out[2 * w..3 * w], k);
+            }
+        },
+    );
+}
+
+#[inline(never)]
 fn change<S: Simd, N: Slot<S>, E: Change>(
     s: S,
     i: &Instruction,
@@ -246,12 +274,14 @@ pub(super) struct Kernels<S, N>(PhantomData<(S, N)>);
 
 macro_rules! leaves { ($($entry:ty,)*) => { &[$(leaf::<S, N, $entry>),*] }; }
 macro_rules! warps { ($($entry:ty,)*) => { &[$(warp::<S, N, $entry>),*] }; }
+macro_rules! puts { ($($entry:ty,)*) => { &[$(put::<S, N, $entry>),*] }; }
 macro_rules! changes { ($($entry:ty,)*) => { &[$(change::<S, N, $entry>),*] }; }
 macro_rules! pairs { ($($entry:ty,)*) => { &[$(pair::<S, N, $entry>),*] }; }
 
 impl<S: Simd, N: Slot<S>> Kernels<S, N> {
     const LEAVES: &'static [Kernel<S>] = each_leaf!(leaves);
     const WARPS: &'static [Kernel<S>] = each_warp!(warps);
+    const PUTS: &'static [Kernel<S>] = each_put!(puts);
     const CHANGES: &'static [Kernel<S>] = each_change!(changes);
     const PAIRS: &'static [Kernel<S>] = each_pair!(pairs);
 
@@ -260,6 +290,7 @@ impl<S: Simd, N: Slot<S>> Kernels<S, N> {
         match operation {
             Operation::Leaf(code) => Self::LEAVES[usize::from(code)],
             Operation::Warp(code) => Self::WARPS[usize::from(code)],
+            Operation::Put(code) => Self::PUTS[usize::from(code)],
             Operation::Change(code) => Self::CHANGES[usize::from(code)],
             Operation::Pair(code) => Self::PAIRS[usize::from(code)],
             Operation::Mark(..) => mark::<S, N>,

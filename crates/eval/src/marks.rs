@@ -39,7 +39,7 @@ fn run<S: Simd>(s: S, tape: Tape<'_>, w: &mut Workspace, n: usize) {
                     trap(s, i, data, &w.lanes, &mut w.marks.marks[out].orbit, n);
                 }
             }
-            Operation::Warp(_) => {}
+            Operation::Warp(_) | Operation::Put(_) => {}
             Operation::Change(_) => w.marks.marks[out] = w.marks.marks[a],
             Operation::Pair(code) => {
                 Shares::<S>::ALL[usize::from(code)](s, i, data, &w.lanes, &mut w.marks.share, n);

@@ -3,7 +3,7 @@
 use std::marker::PhantomData;
 use zeroset_catalogue::op::*;
 use zeroset_catalogue::tape::{Instruction, Operation, Tape};
-use zeroset_catalogue::{each_change, each_leaf, each_pair, each_warp};
+use zeroset_catalogue::{each_change, each_leaf, each_pair, each_put, each_warp};
 use zeroset_number::{Args, Data, Dual, F64, Interval, Real, SingleInterval, Slope, Vec3};
 
 /// Number types that tapes are evaluated over one point at a time. Their kernels are compiled here and nowhere else.
@@ -106,6 +106,11 @@ fn warp<R: Real<Store = Data>, E: Warp>(i: &Instruction, data: &Data, r: &mut [R
     r[usize::from(i.out)..][..3].copy_from_slice(&[q.x, q.y, q.z]);
 }
 
+fn put<R: Real<Store = Data>, E: Put>(i: &Instruction, _data: &Data, r: &mut [R]) {
+    let q = E::put(r[usize::from(i.a)], point(r, i.b));
+    r[usize::from(i.out)..][..3].copy_from_slice(&[q.x, q.y, q.z]);
+}
+
 fn change<R: Real<Store = Data>, E: Change>(i: &Instruction, data: &Data, r: &mut [R]) {
     r[usize::from(i.out)] = E::change(r[usize::from(i.a)], point(r, i.b), args(i, data));
 }
@@ -123,12 +128,14 @@ pub(super) struct PointKernels<R>(PhantomData<R>);
 
 macro_rules! leaves { ($($entry:ty,)*) => { &[$(leaf::<R, $entry>),*] }; }
 macro_rules! warps { ($($entry:ty,)*) => { &[$(warp::<R, $entry>),*] }; }
+macro_rules! puts { ($($entry:ty,)*) => { &[$(put::<R, $entry>),*] }; }
 macro_rules! changes { ($($entry:ty,)*) => { &[$(change::<R, $entry>),*] }; }
 macro_rules! pairs { ($($entry:ty,)*) => { &[$(pair::<R, $entry>),*] }; }
 
 impl<R: Real<Store = Data> + 'static> PointKernels<R> {
     const LEAVES: &'static [PointKernel<R>] = each_leaf!(leaves);
     const WARPS: &'static [PointKernel<R>] = each_warp!(warps);
+    const PUTS: &'static [PointKernel<R>] = each_put!(puts);
     const CHANGES: &'static [PointKernel<R>] = each_change!(changes);
     const PAIRS: &'static [PointKernel<R>] = each_pair!(pairs);
 
@@ -137,6 +144,7 @@ impl<R: Real<Store = Data> + 'static> PointKernels<R> {
         match operation {
             Operation::Leaf(code) => Self::LEAVES[usize::from(code)],
             Operation::Warp(code) => Self::WARPS[usize::from(code)],
+            Operation::Put(code) => Self::PUTS[usize::from(code)],
             Operation::Change(code) => Self::CHANGES[usize::from(code)],
             Operation::Pair(code) => Self::PAIRS[usize::from(code)],
             Operation::Mark(..) => mark::<R>,

@@ -33,7 +33,7 @@ struct Step {
 
 impl Step {
     fn gives_point(&self) -> bool {
-        matches!(self.operation, Operation::Warp(_))
+        matches!(self.operation, Operation::Warp(_) | Operation::Put(_))
     }
 }
 
@@ -118,13 +118,12 @@ impl Pruner {
                     Kept::Both => {}
                 }
             }
-            Operation::Leaf(_) | Operation::Mark(..) => {}
+            Operation::Leaf(_) | Operation::Put(_) | Operation::Mark(..) => {}
         }
         PointKernels::<SingleInterval>::of(i.operation)(i, data, &mut self.registers);
-        let width = if let Operation::Warp(_) = i.operation {
-            3
-        } else {
-            1
+        let width = match i.operation {
+            Operation::Warp(_) | Operation::Put(_) => 3,
+            _ => 1,
         };
         let results = &mut self.registers[out..out + width];
         self.defined[out] = defined && results.iter().all(|range| range.is_finite());

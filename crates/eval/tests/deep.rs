@@ -138,7 +138,7 @@ fn long_formulas() {
             let formula = Formula::prove(steps.clone(), bounds, &Budget::default())
                 .or_else(|_| Formula::stated(steps, bounds, 100.0))
                 .unwrap();
-            let field = Field::formula(Arc::new(formula));
+            let field = Field::formula(Arc::new(formula)).unwrap();
             let program = Program::compile(&field, &Limits::default()).unwrap();
             let value = Point::<F64>::new(program.values()).value(v3(F64(0.3), F64(0.4), F64(0.1)));
             assert!(value.0.is_finite(), "{name}");
@@ -160,7 +160,11 @@ fn the_longest_formula() {
     }
     let steps = Steps::new(steps).unwrap();
     let formula = Formula::prove(steps, Aabb::centred([1.0; 3]), &Budget::default()).unwrap();
-    let program = Program::compile(&Field::formula(Arc::new(formula)), &Limits::default()).unwrap();
+    let program = Program::compile(
+        &Field::formula(Arc::new(formula)).unwrap(),
+        &Limits::default(),
+    )
+    .unwrap();
     let value = Point::<F64>::new(program.values()).value(v3(F64(0.3), F64(0.4), F64(0.1)));
     assert!(value.0.abs() < 0.01, "{value:?}");
 }

@@ -6,7 +6,7 @@ use zeroset_catalogue::bounds::Aabb;
 use zeroset_eval::{BATCH, Point, Workspace};
 use zeroset_field::field::Field;
 use zeroset_field::formula::{
-    Binary, Budget, Builder, Expression, Formula, FormulaStep, ProofError, Steps, Unary,
+    Binary, Budget, Builder, Expression, Formula, FormulaStep, NoiseKind, ProofError, Steps, Unary,
 };
 use zeroset_field::program::{Limits, Program};
 use zeroset_number::{F64, Interval, v3};
@@ -42,7 +42,11 @@ impl Random {
 }
 
 fn compiled(formula: Formula) -> Program {
-    Program::compile(&Field::formula(Arc::new(formula)), &Limits::default()).unwrap()
+    Program::compile(
+        &Field::formula(Arc::new(formula)).unwrap(),
+        &Limits::default(),
+    )
+    .unwrap()
 }
 
 fn value(program: &Program, p: [f64; 3]) -> f64 {
@@ -203,8 +207,12 @@ fn alone(step: FormulaStep) -> Formula {
 #[test]
 fn every_operation_compiles_to_itself() {
     let unary = Unary::ALL.map(|f| FormulaStep::Unary(f, 0));
-    let binary = Binary::ALL.map(|f| FormulaStep::Binary(f, 0, 1));
-    for step in unary.into_iter().chain(binary) {
+    // halves of choices have no value of their own: see `choices_noises_and_fields`
+    let binary = (Binary::ALL.into_iter())
+        .filter(|f| !matches!(f, Binary::When | Binary::Either))
+        .map(|f| FormulaStep::Binary(f, 0, 1));
+    let noise = NoiseKind::ALL.map(|kind| FormulaStep::Noise(kind, [0, 1, 0]));
+    for step in unary.into_iter().chain(binary).chain(noise) {
         let formula = alone(step);
         let program = compiled(formula.clone());
         let mut r = Random(0x5eed_0013);
@@ -271,5 +279,165 @@ fn what_is_not_a_number_stays_in_its_place() {
                 );
             }
         }
+    }
+}
+
+/// A formula as the evaluators see it, single precision against double, over its box and around it.
+#[track_caller]
+fn agrees(name: &str, formula: &Formula) {
+    let program = compiled(formula.clone());
+    let mut w = Workspace::new(program.values(), program.marks());
+    let mut r = Random(0x5eed_0021);
+    let tolerance = 3e-6 * formula.slope();
+    for _ in 0..200 {
+        let p = r.point(1.9).map(|x| f64::from(x as f32));
+        let [x, y, z] = p.map(F64);
+        let inside =
+            (0..3).all(|k| formula.bounds().min[k] <= p[k] && p[k] <= formula.bounds().max[k]);
+        let f = value(&program, p);
+        if inside {
+            // the box cuts what reaches it: no less than minus the way to its side
+            let depth = (0..3)
+                .map(|k| (p[k] - formula.bounds().min[k]).min(formula.bounds().max[k] - p[k]))
+                .fold(f64::INFINITY, f64::min);
+            let plain = (formula.eval(v3(x, y, z)).0 / formula.slope()).max(-depth);
+            assert!(
+                (f - plain).abs() < tolerance + 1e-5,
+                "{name}: {f} for {plain} at {p:?}"
+            );
+        }
+        for k in 0..3 {
+            w.points_mut()[k].0.fill(p[k] as f32);
+        }
+        zeroset_number::at_level!(Level::new(), s => zeroset_eval::values(s, program.values(), &mut w, 1));
+        let single = f64::from(w.values().0[0]);
+        assert!(
+            (single - f).abs() < tolerance + 1e-5,
+            "{name}: {single} for {f} at {p:?}"
+        );
+        let around = program_range(&program, p, 0.05);
+        assert!(around.contains(f), "{name}: {around:?} for {f} at {p:?}");
+    }
+}
+
+fn program_range(program: &Program, p: [f64; 3], half: f64) -> Interval {
+    let side = |x: f64| Interval::new(x - half, x + half);
+    Point::<Interval>::new(program.values()).value(v3(side(p[0]), side(p[1]), side(p[2])))
+}
+
+#[test]
+fn choices_noises_and_fields() {
+    let all = zeroset_catalogue::entries::catalogue();
+    let shape = |name: &str| {
+        let entry = all.primitive(name).unwrap();
+        Field::primitive(entry, entry.info.defaults()).unwrap()
+    };
+    let (ball, cube) = (shape("sphere"), shape("box"));
+    let twisted = {
+        let entry = all.map("twist").unwrap();
+        cube.map(entry, vec![1.5]).unwrap()
+    };
+    let cases: Vec<(&str, Box<dyn Fn(&Expression) -> Expression>)> = vec![
+        (
+            "a kink",
+            Box::new(|p| p.x().less(p.y()).choose(p.x(), p.y()) - 0.3),
+        ),
+        (
+            "half a ball, half a cylinder",
+            Box::new(|p| {
+                let d = p.swizzle("xz").unwrap().length();
+                let high = 0.0.less_than(&p.y());
+                high.choose(p.length() - 1.0, &d - 1.0)
+            }),
+        ),
+        (
+            "nested",
+            Box::new(|p| {
+                let inner = p.y().less(0.2).choose(p.y() * 2.0, p.y() + 0.2);
+                p.x().less(0.0).choose(-p.x(), p.x()) + inner - 0.5
+            }),
+        ),
+        (
+            "noise",
+            Box::new(|p| {
+                p.builder().noise(NoiseKind::Gradient, &(p * 2.0)) * 0.2 + p.length() - 1.0
+            }),
+        ),
+        ("layers", Box::new(|p| p.fbm(NoiseKind::Value, 3) + p.y())),
+        (
+            "cells",
+            Box::new(|p| {
+                p.builder()
+                    .noise(NoiseKind::Cellular, &(p * 3.0 + p.x().sin()))
+                    - 0.3
+            }),
+        ),
+        ("a field", {
+            let ball = ball.clone();
+            Box::new(move |p| p.builder().field(&ball, &(p * 1.5)).abs() - 0.1)
+        }),
+        ("a field elsewhere", {
+            let (cube, ball) = (cube.clone(), ball.clone());
+            Box::new(move |p| {
+                let q = p.rotate([0.0, 1.0, 0.0], p.y());
+                p.builder()
+                    .field(&cube, &q)
+                    .max(-(p.builder().field(&ball, p) + 0.5))
+            })
+        }),
+        (
+            "a steep field",
+            Box::new(move |p| p.builder().field(&twisted, p) + p.x() * 0.1),
+        ),
+    ];
+    for (name, f) in &cases {
+        let formula = proven(1.5, f).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let mut r = Random(0x5eed_0022);
+        for _ in 0..2000 {
+            let (p, q) = (r.point(1.5), r.point(1.5));
+            let scale = 10_f64.powf(-4.0 * r.unit());
+            let q: [f64; 3] = std::array::from_fn(|k| p[k] + scale * (q[k] - p[k]));
+            let at = |[x, y, z]: [f64; 3]| formula.eval(v3(F64(x), F64(y), F64(z))).0;
+            let way = (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
+            let rise = (at(p) - at(q)).abs();
+            assert!(
+                rise <= formula.slope() * way * (1.0 + 1e-9) + 1e-6,
+                "{name}: {rise} over {way}"
+            );
+        }
+        agrees(name, &formula);
+    }
+    // what jumps is refused, wherever it does
+    for (name, f) in [
+        (
+            "a step",
+            &(|p: &Expression| p.x().less(0.3).choose(0.5, p.y()))
+                as &dyn Fn(&Expression) -> Expression,
+        ),
+        ("a small step", &|p: &Expression| {
+            p.x().less(0.3).choose(p.x(), p.x() + 1e-6)
+        }),
+        ("agreeing elsewhere", &|p: &Expression| {
+            p.x().less(0.3).choose(p.y() * (p.x() - 0.4), 0.0)
+        }),
+        ("a condition as a number", &|p: &Expression| {
+            p.x().less(0.3) + p.y()
+        }),
+    ] {
+        assert!(
+            matches!(proven(1.5, f), Err(ProofError::Unbounded(_))),
+            "{name}"
+        );
+    }
+}
+
+/// `x < p`, for a number x.
+trait LessThan {
+    fn less_than(self, p: &Expression) -> Expression;
+}
+
+impl LessThan for f64 {
+    fn less_than(self, p: &Expression) -> Expression {
+        p.builder().constant(self).less(p)
     }
 }

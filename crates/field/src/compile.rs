@@ -30,7 +30,7 @@ struct Lowered {
 
 impl Lowered {
     fn gives_point(&self) -> bool {
-        matches!(self.operation, Operation::Warp(_))
+        matches!(self.operation, Operation::Warp(_) | Operation::Put(_))
     }
 }
 
@@ -61,10 +61,19 @@ pub(crate) fn compile(
     limits: &Limits,
     spatial: &[bool],
 ) -> Result<Program, CompileError> {
-    let facts = field.facts();
-    if facts.dimension == Dimension::Two {
+    if field.facts().dimension == Dimension::Two {
         return Err(CompileError::Flat);
     }
+    compile_any(field, limits, spatial)
+}
+
+/// Compiles a field, be it a plane shape.
+pub(crate) fn compile_any(
+    field: &Field,
+    limits: &Limits,
+    spatial: &[bool],
+) -> Result<Program, CompileError> {
+    let facts = field.facts();
     let mut l = Lowering {
         steps: Vec::new(),
         params: Vec::new(),
@@ -81,8 +90,8 @@ pub(crate) fn compile(
     let result = l.unit(field, value)?;
     let (places, coats) = places(&l.steps, &l.coats)?;
     let structure = Structure {
-        values: registers(&l.steps, result, false)?,
-        marks: registers(&l.steps, result, true)?,
+        values: registers(&l.steps, &[result], false)?.0,
+        marks: registers(&l.steps, &[result], true)?.0,
         sides: l.sides,
         places,
         coats,
@@ -422,8 +431,17 @@ impl Lowering<'_> {
     fn formula(&mut self, formula: &Formula, point: u32) -> Result<u32, CompileError> {
         let sides = sides(&formula.bounds());
         let inside = self.warp(code::CLAMP, point, &sides)?;
-        let mut values = Vec::with_capacity(formula.steps().len());
+        let mut values: Vec<u32> = Vec::with_capacity(formula.steps().len());
+        // values that depend on a painted field, whose marks they keep
+        let mut painted: Vec<bool> = Vec::with_capacity(formula.steps().len());
         for step in formula.steps() {
+            let depends = step.operands().any(|i| painted[i as usize]);
+            painted.push(match *step {
+                FormulaStep::Field(i, _) => {
+                    formula.fields()[i as usize].field().facts().materials > 0
+                }
+                _ => depends,
+            });
             values.push(match *step {
                 FormulaStep::Coordinate(k) => {
                     self.leaf(code::COORDINATE + u16::from(k), inside, &[])?
@@ -433,7 +451,21 @@ impl Lowering<'_> {
                     self.change(code::unary(f), values[x as usize], inside, &[])?
                 }
                 FormulaStep::Binary(f, x, y) => {
-                    self.pair(code::binary(f), values[x as usize], values[y as usize], &[])?
+                    let value =
+                        self.pair(code::binary(f), values[x as usize], values[y as usize], &[])?;
+                    match (painted[x as usize], painted[y as usize]) {
+                        (true, false) => self.replaced(values[x as usize], value, inside)?,
+                        (false, true) => self.replaced(values[y as usize], value, inside)?,
+                        _ => value,
+                    }
+                }
+                FormulaStep::Noise(kind, q) => {
+                    let q = self.point(formula, q, &values, inside)?;
+                    self.leaf(code::noise(kind), q, &[])?
+                }
+                FormulaStep::Field(i, q) => {
+                    let q = self.point(formula, q, &values, inside)?;
+                    self.field(formula.fields()[i as usize].field(), q)?
                 }
             });
         }
@@ -447,6 +479,30 @@ impl Lowering<'_> {
             point,
             &[&sides[..], &[formula.slope()]].concat(),
         )
+    }
+
+    /// The point that three steps of a formula are; `inside` is where the formula is evaluated.
+    fn point(
+        &mut self,
+        formula: &Formula,
+        q: [u32; 3],
+        values: &[u32],
+        inside: u32,
+    ) -> Result<u32, CompileError> {
+        let mut point = inside;
+        for (k, step) in (0..3).zip(q) {
+            if formula.steps()[step as usize] != FormulaStep::Coordinate(k as u8) {
+                let value = values[step as usize];
+                point = self.emit(Operation::Put(k), value, point, &[])?;
+            }
+        }
+        Ok(point)
+    }
+
+    /// A value with the marks of another one.
+    fn replaced(&mut self, marked: u32, value: u32, inside: u32) -> Result<u32, CompileError> {
+        let point = self.emit(Operation::Put(0), value, inside, &[])?;
+        self.change(code::REPLACED, marked, point, &[])
     }
 
     fn sampled(&mut self, sampled: &Sampled, point: u32) -> Result<u32, CompileError> {
@@ -514,56 +570,23 @@ fn grid(r: &Repetition) -> Vec<f64> {
     (0..5).flat_map(|i| axes.map(|a| a[i])).collect()
 }
 
-/// The maps that lead to the spaces of coats, each with a register of its own.
+/// What leads to the spaces of coats.
 fn places(steps: &[Lowered], coats: &[(u16, u32)]) -> Result<(Code, Vec<Coat>), CompileError> {
-    let mut register = vec![None; steps.len()];
-    for &(_, point) in coats {
-        let mut at = point;
-        while at != INPUT && register[at as usize].is_none() {
-            register[at as usize] = Some(0);
-            at = steps[at as usize].a;
-        }
-    }
-    // in their order: what a map reads is before it
-    let mut count = 1;
-    for slot in register.iter_mut().flatten() {
-        *slot = 3 * count;
-        count += 1;
-    }
-    let (needed, limit) = (3 * count, usize::from(u16::MAX) / 4);
-    if needed > limit {
-        return Err(CompileError::Registers { needed, limit });
-    }
-    let number = |i: u32| match i {
-        INPUT => 0,
-        i => register[i as usize].unwrap_or(0) as u16,
-    };
-    let instructions = (steps.iter().zip(0..))
-        .filter(|(_, i)| register[*i as usize].is_some())
-        .map(|(step, i)| Instruction {
-            operation: step.operation,
-            out: number(i),
-            a: number(step.a),
-            b: number(step.b),
-            at: step.at,
-        })
-        .collect();
-    let code = Code {
-        instructions,
-        registers: needed as u16,
-        result: 0,
-    };
-    let coats = (coats.iter())
-        .map(|&(material, point)| Coat {
-            material,
-            place: number(point),
-        })
+    let points: Vec<u32> = coats.iter().map(|(_, point)| *point).collect();
+    let (code, places) = registers(steps, &points, false)?;
+    let coats = (coats.iter().zip(places))
+        .map(|(&(material, _), place)| Coat { material, place })
         .collect();
     Ok((code, coats))
 }
 
-/// Keeps what the result needs and gives every value a register, the same one to values that are never needed together.
-fn registers(steps: &[Lowered], result: u32, marks: bool) -> Result<Code, CompileError> {
+/// Keeps what the results need and gives every value a register, the same one to values that are never needed together. The registers of the
+/// results come with the code, whose result is the last of them.
+fn registers(
+    steps: &[Lowered],
+    results: &[u32],
+    marks: bool,
+) -> Result<(Code, Vec<u16>), CompileError> {
     // without marks, a mark is the value that it marks
     let mut same: Vec<u32> = (0..steps.len() as u32).collect();
     if !marks {
@@ -574,11 +597,13 @@ fn registers(steps: &[Lowered], result: u32, marks: bool) -> Result<Code, Compil
         }
     }
     let actual = |i: u32| if i == INPUT { INPUT } else { same[i as usize] };
-    let result = actual(result);
+    let results: Vec<u32> = results.iter().map(|&result| actual(result)).collect();
     let operands = |step: &Lowered| [actual(step.a), actual(step.b)];
 
     let mut last_use = vec![None; steps.len()];
-    last_use[result as usize] = Some(steps.len());
+    for &result in results.iter().filter(|r| **r != INPUT) {
+        last_use[result as usize] = Some(steps.len());
+    }
     for (i, step) in steps.iter().enumerate().rev() {
         if last_use[i].is_some() {
             for operand in operands(step) {
@@ -635,9 +660,11 @@ fn registers(steps: &[Lowered], result: u32, marks: bool) -> Result<Code, Compil
             }
         })
         .collect();
-    Ok(Code {
+    let results: Vec<u16> = results.into_iter().map(number).collect();
+    let code = Code {
         instructions,
         registers: needed as u16,
-        result: number(result),
-    })
+        result: results.last().copied().unwrap_or(0),
+    };
+    Ok((code, results))
 }

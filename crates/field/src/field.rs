@@ -3,7 +3,7 @@
 //! A [`Field`] is cheap to clone, and a clone is the same node: a shape used in two places of a tree at the same place in
 //! space is evaluated once. Every node is checked when it is made, and knows its box, its exactness and its slope.
 
-use crate::formula::Formula;
+use crate::formula::{Formula, Inner};
 use crate::level::join_bounds;
 use crate::placement::Placement;
 use crate::repetition::{Polar, Repetition};
@@ -471,22 +471,42 @@ impl Field {
     }
 
     /// A free-form formula, which brings its own proof of its slope.
-    pub fn formula(formula: Arc<Formula>) -> Field {
-        let facts = Facts {
-            bounds: formula.bounds(),
-            exactness: if formula.is_proven() {
-                Exactness::Bound
-            } else {
-                Exactness::Estimate
-            },
+    ///
+    /// # Errors
+    /// A tree too deep, through the fields that the formula takes the values of.
+    pub fn formula(formula: Arc<Formula>) -> Result<Field, FieldError> {
+        let dimension = formula.dimension();
+        let mut bounds = formula.bounds();
+        if dimension == Dimension::Two {
+            // a plane shape has no ends along z
+            (bounds.min[2], bounds.max[2]) = (f64::NEG_INFINITY, f64::INFINITY);
+        }
+        let exactness = if formula.is_proven() {
+            Exactness::Bound
+        } else {
+            Exactness::Estimate
+        };
+        let mut facts = Facts {
+            bounds,
+            exactness,
             slope: formula.slope(),
             steep: true,
-            dimension: Dimension::Three,
+            dimension,
             depth: 1,
             nodes: 1,
             materials: 0,
         };
-        Field::new(Node::Formula(formula), facts)
+        for inner in formula.fields() {
+            let child = inner.field().facts();
+            facts.exactness = facts.exactness.max(child.exactness);
+            facts.depth = facts.depth.max(child.depth.saturating_add(1));
+            facts.nodes = facts.nodes.saturating_add(child.nodes);
+            facts.materials = facts.materials.max(child.materials);
+        }
+        if facts.depth > MAX_DEPTH {
+            return Err(FieldError::Deep);
+        }
+        Ok(Field::new(Node::Formula(formula), facts))
     }
 
     /// A grid of samples, continued beyond its box: a mesh, a volume of a file, an image as a plane shape.
@@ -553,17 +573,18 @@ impl Field {
     }
 
     /// The nodes right below this one.
-    pub fn children(&self) -> &[Field] {
+    pub fn children(&self) -> Vec<&Field> {
         match self.node() {
-            Node::Primitive { .. } | Node::Formula(_) | Node::Sampled(_) => &[],
-            Node::Join { shapes, .. } => shapes,
+            Node::Primitive { .. } | Node::Sampled(_) => Vec::new(),
+            Node::Formula(formula) => formula.fields().iter().map(Inner::field).collect(),
+            Node::Join { shapes, .. } => shapes.iter().collect(),
             Node::Map { shape, .. }
             | Node::Modify { shape, .. }
             | Node::Place { shape, .. }
             | Node::Repeat { shape, .. }
             | Node::Polar { shape, .. }
             | Node::Sided(shape)
-            | Node::Paint { shape, .. } => std::slice::from_ref(shape),
+            | Node::Paint { shape, .. } => vec![shape],
         }
     }
 

@@ -22,18 +22,25 @@
 //! ```
 
 use crate::proof::{self, ProofTape};
+use std::sync::Arc;
+use zeroset_catalogue::Dimension;
 use zeroset_catalogue::bounds::Aabb;
 use zeroset_catalogue::op::arithmetic;
-use zeroset_number::{Real, Vec3};
+use zeroset_eval::PointNumber;
+use zeroset_number::Vec3;
 
 mod builder;
+mod ease;
 mod function;
+mod inner;
 pub(crate) mod print;
 
 pub use crate::proof::{Budget, Cause, Obstacle, ProofError};
 pub use builder::{BuildError, Builder, Expression, MAX_STEPS};
-pub use function::{Function, functions};
-pub use zeroset_catalogue::op::arithmetic::{Binary, Unary};
+pub use ease::Ease;
+pub use function::{EASE, Function, ROTATE, WHERE, functions};
+pub use inner::Inner;
+pub use zeroset_catalogue::op::arithmetic::{Binary, NoiseKind, Unary};
 
 /// One step of a formula; operands are the numbers of earlier steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +53,10 @@ pub enum FormulaStep {
     Unary(Unary, u32),
     /// A function of two earlier steps.
     Binary(Binary, u32, u32),
+    /// A noise at the point that three earlier steps are.
+    Noise(NoiseKind, [u32; 3]),
+    /// The value of the [field](Steps::fields) of this number at the point that three earlier steps are.
+    Field(u32, [u32; 3]),
 }
 
 /// The largest constant that a formula may hold, in magnitude: its square fits single precision.
@@ -91,6 +102,16 @@ pub enum StepsError {
     /// A power that has no value, or too many steps once whole powers are written as products.
     #[error(transparent)]
     Built(#[from] BuildError),
+    /// A field that there is not.
+    #[error("step {step} is the value of field {field}, of {given} that the formula has")]
+    Field {
+        /// The step.
+        step: usize,
+        /// The field's number.
+        field: u32,
+        /// How many there are.
+        given: usize,
+    },
     /// A constant that single precision cannot hold.
     #[error("step {step} is the constant {value}, which must lie within -1e18 to 1e18")]
     Constant {
@@ -103,7 +124,10 @@ pub enum StepsError {
 
 /// The steps of a formula, the last of which is its value. Every operand comes before the step that takes it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Steps(Vec<FormulaStep>);
+pub struct Steps {
+    list: Vec<FormulaStep>,
+    fields: Arc<[Inner]>,
+}
 
 impl Steps {
     /// Checks a list of steps. Whole powers are written as products, so the list may become longer.
@@ -111,6 +135,14 @@ impl Steps {
     /// # Errors
     /// No steps or too many, operands that are no earlier steps, numbers out of range.
     pub fn new(steps: Vec<FormulaStep>) -> Result<Steps, StepsError> {
+        Steps::with_fields(steps, Vec::new())
+    }
+
+    /// As [`Steps::new`], for formulas that take the values of fields.
+    ///
+    /// # Errors
+    /// As for [`Steps::new`], and a field that is not among those given.
+    pub fn with_fields(steps: Vec<FormulaStep>, fields: Vec<Inner>) -> Result<Steps, StepsError> {
         if steps.is_empty() {
             return Err(StepsError::Empty);
         }
@@ -127,6 +159,10 @@ impl Steps {
                 FormulaStep::Constant(value) if !(-LARGEST..=LARGEST).contains(&value) => {
                     return Err(StepsError::Constant { step, value });
                 }
+                FormulaStep::Field(field, _) if field as usize >= fields.len() => {
+                    let given = fields.len();
+                    return Err(StepsError::Field { step, field, given });
+                }
                 _ => {}
             }
             for operand in what.operands() {
@@ -135,19 +171,47 @@ impl Steps {
                 }
             }
         }
-        Ok(Steps(builder::without_whole_powers(steps)?))
+        let fields = Arc::from(fields);
+        let list = builder::without_whole_powers(steps, &fields)?;
+        Ok(Steps { list, fields })
     }
 
     /// The steps in their order.
     pub fn list(&self) -> &[FormulaStep] {
-        &self.0
+        &self.list
+    }
+
+    /// The fields whose values the steps take.
+    pub fn fields(&self) -> &[Inner] {
+        &self.fields
+    }
+
+    /// A box that holds all places of `bounds` where the formula may be 0 or below, as small as a short search finds it.
+    pub fn reach(&self, bounds: &Aabb) -> Aabb {
+        // again within what was found, while that is much less: the search goes down to a part of the box it is given
+        const TIMES: usize = 3;
+        let (tape, mut within) = (ProofTape::new(self), *bounds);
+        for _ in 0..TIMES {
+            let found = proof::reach(&tape, &within);
+            let (now, before) = (found.half(), within.half());
+            let less = (0..3).any(|k| now[k] < 0.5 * before[k]);
+            within = found;
+            if !less || within.is_empty() {
+                break;
+            }
+        }
+        within
+    }
+
+    pub(crate) fn shared_fields(&self) -> Arc<[Inner]> {
+        Arc::clone(&self.fields)
     }
 
     /// The value at `p`.
-    pub fn eval<R: Real>(&self, p: Vec3<R>) -> R {
-        let mut values: Vec<R> = Vec::with_capacity(self.0.len());
-        for step in &self.0 {
-            values.push(step.eval(p, &values));
+    pub fn eval<R: PointNumber>(&self, p: Vec3<R>) -> R {
+        let mut values: Vec<R> = Vec::with_capacity(self.list.len());
+        for step in &self.list {
+            values.push(step.eval(p, &values, &self.fields));
         }
         values[values.len() - 1]
     }
@@ -155,7 +219,12 @@ impl Steps {
 
 impl FormulaStep {
     /// Its value at `p`, from the values of earlier steps.
-    pub(crate) fn eval<R: Real>(&self, p: Vec3<R>, values: &[R]) -> R {
+    pub(crate) fn eval<R: PointNumber>(&self, p: Vec3<R>, values: &[R], fields: &[Inner]) -> R {
+        let point = |[x, y, z]: [u32; 3]| Vec3 {
+            x: values[x as usize],
+            y: values[y as usize],
+            z: values[z as usize],
+        };
         match *self {
             FormulaStep::Coordinate(k) => [p.x, p.y, p.z][usize::from(k)],
             FormulaStep::Constant(c) => p.x.like(R::constant(c)),
@@ -163,17 +232,31 @@ impl FormulaStep {
             FormulaStep::Binary(f, x, y) => {
                 arithmetic::binary(f, values[x as usize], values[y as usize])
             }
+            FormulaStep::Noise(kind, q) => arithmetic::noise(kind, point(q)),
+            FormulaStep::Field(i, q) => fields[i as usize].value(point(q)),
         }
     }
 
     /// The earlier steps that it takes.
     pub(crate) fn operands(&self) -> impl Iterator<Item = u32> {
-        let (x, y) = match *self {
-            FormulaStep::Coordinate(_) | FormulaStep::Constant(_) => (None, None),
-            FormulaStep::Unary(_, x) => (Some(x), None),
-            FormulaStep::Binary(_, x, y) => (Some(x), Some(y)),
+        let (all, count) = match *self {
+            FormulaStep::Coordinate(_) | FormulaStep::Constant(_) => ([0; 3], 0),
+            FormulaStep::Unary(_, x) => ([x, 0, 0], 1),
+            FormulaStep::Binary(_, x, y) => ([x, y, 0], 2),
+            FormulaStep::Noise(_, q) | FormulaStep::Field(_, q) => (q, 3),
         };
-        x.into_iter().chain(y)
+        all.into_iter().take(count)
+    }
+
+    /// The same with other operands.
+    pub(crate) fn renamed(self, name: impl Fn(u32) -> u32) -> FormulaStep {
+        match self {
+            FormulaStep::Coordinate(_) | FormulaStep::Constant(_) => self,
+            FormulaStep::Unary(f, x) => FormulaStep::Unary(f, name(x)),
+            FormulaStep::Binary(f, x, y) => FormulaStep::Binary(f, name(x), name(y)),
+            FormulaStep::Noise(kind, q) => FormulaStep::Noise(kind, q.map(name)),
+            FormulaStep::Field(i, q) => FormulaStep::Field(i, q.map(name)),
+        }
     }
 }
 
@@ -187,6 +270,7 @@ pub struct Formula {
     steepest: f64,
     steepest_at: [f64; 3],
     cut: Option<[f64; 3]>,
+    flat: bool,
 }
 
 impl Formula {
@@ -214,6 +298,7 @@ impl Formula {
             steepest: proof.steepest,
             steepest_at: proof.steepest_at,
             cut,
+            flat: false,
         })
     }
 
@@ -241,6 +326,7 @@ impl Formula {
             steepest,
             steepest_at,
             cut,
+            flat: false,
         })
     }
 
@@ -249,8 +335,41 @@ impl Formula {
         self.steps.list()
     }
 
+    /// The fields whose values the steps take.
+    pub fn fields(&self) -> &[Inner] {
+        self.steps.fields()
+    }
+
+    /// The same as a shape of the plane.
+    ///
+    /// # Errors
+    /// A formula that depends on z.
+    pub fn flattened(mut self) -> Result<Formula, ProofError> {
+        if self.steps().contains(&FormulaStep::Coordinate(2)) {
+            return Err(ProofError::Flat);
+        }
+        (self.bounds.min[2], self.bounds.max[2]) =
+            (-zeroset_catalogue::LARGE, zeroset_catalogue::LARGE);
+        self.flat = true;
+        Ok(self)
+    }
+
+    /// The plane or space.
+    pub fn dimension(&self) -> Dimension {
+        if self.flat {
+            Dimension::Two
+        } else {
+            Dimension::Three
+        }
+    }
+
+    /// A box that holds the solid, as small as a short search finds it: no larger than [`Formula::bounds`].
+    pub fn reach(&self) -> Aabb {
+        self.steps.reach(&self.bounds)
+    }
+
     /// The value at `p`, wherever that is.
-    pub fn eval<R: Real>(&self, p: Vec3<R>) -> R {
+    pub fn eval<R: PointNumber>(&self, p: Vec3<R>) -> R {
         self.steps.eval(p)
     }
 

@@ -24,7 +24,7 @@ pub struct Structure {
     pub marks: Code,
     /// Parameters that are 1 for rays outside all bodies, and others for rays inside clear ones: see [`Program::inside`].
     pub sides: Vec<u32>,
-    /// Instructions that find where a point lies in the spaces of [`Structure::coats`]: maps alone, without a result.
+    /// Instructions that find where a point lies in the spaces of [`Structure::coats`], each in a register of its own.
     pub places: Code,
     /// Materials in the space of what they were painted on: see [`Program::compile_painted`].
     pub coats: Vec<Coat>,

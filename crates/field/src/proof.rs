@@ -4,6 +4,7 @@ use crate::formula::print::number;
 use std::fmt;
 
 mod base;
+mod choice;
 mod jet;
 mod look;
 mod obstacle;
@@ -14,7 +15,7 @@ pub use obstacle::{Cause, Obstacle};
 
 pub(crate) use base::bases;
 use jet::Jet;
-pub(crate) use look::{cut, sample};
+pub(crate) use look::{cut, reach, sample};
 pub(crate) use search::slope;
 use tape::Cell;
 pub(crate) use tape::ProofTape;
@@ -44,7 +45,7 @@ impl Default for Budget {
 impl Budget {
     /// Boxes that a formula may be looked at in: a few also of a long one, as long as that is a matter of a second.
     fn cells(&self, tape: &ProofTape) -> u64 {
-        let steps = tape.steps().len() as u64;
+        let steps = tape.work();
         (self.operations / steps).max((LONGEST / steps).clamp(1, 64))
     }
 }
@@ -59,6 +60,8 @@ pub enum ProofError {
         /// Largest corner.
         max: [f64; 3],
     },
+    /// A plane shape that depends on z.
+    Flat,
     /// A stated slope that is not above 0, or above [`STEEPEST`](crate::formula::STEEPEST).
     Slope {
         /// What was stated.
@@ -94,6 +97,9 @@ impl fmt::Display for ProofError {
                 place(*min),
                 place(*max)
             ),
+            ProofError::Flat => {
+                f.write_str("a plane shape cannot depend on z: its points are (x, y)")
+            }
             ProofError::Slope { given } => {
                 write!(
                     f,

@@ -191,6 +191,9 @@ impl Document {
         };
         let finished = on_a_deep_stack(|| {
             let (mut draft, result) = run();
+            if result.is_ok() && !options.bare {
+                draft.welcome();
+            }
             let cache = std::mem::take(&mut draft.files.cache);
             (finish(name, draft, result, limits), cache)
         });

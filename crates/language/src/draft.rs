@@ -87,6 +87,8 @@ pub(crate) struct Draft {
     pub(crate) sources: Vec<Source>,
     pub(crate) objects: Vec<Object>,
     pub(crate) materials: Vec<Material>,
+    /// Objects whose material the file leaves open.
+    pub(crate) plain: Vec<usize>,
     numbers: HashMap<String, u16>,
     pub(crate) view: Option<CameraDraft>,
     /// Absent as long as nothing is said of lights.
@@ -118,6 +120,7 @@ impl Draft {
             sources,
             objects: Vec::new(),
             materials: Vec::new(),
+            plain: Vec::new(),
             numbers: HashMap::new(),
             view: None,
             lights: None,
@@ -220,7 +223,7 @@ impl Draft {
         let lights = self
             .lights
             .unwrap_or_else(|| vec![key_light(settings.shading)]);
-        let bounds = objects.iter().map(|o| o.field.facts().bounds);
+        let bounds = objects.iter().map(|o| framing::surface(&o.field));
         let camera = framing::camera(&self.view.unwrap_or_default(), bounds, settings.size)?;
         let sky = self.sky.unwrap_or_default();
         let sky = Sky {

@@ -3,11 +3,12 @@
 use crate::draft::{CameraDraft, Focus, camera_with};
 use glam::{DMat3, DVec3};
 use zeroset_catalogue::bounds::Aabb;
+use zeroset_field::field::{Field, Node};
 use zeroset_scene::camera::Camera;
 use zeroset_scene::scene::finite_bounds;
 
-/// From the target to the eye: a little to the right, a little above.
-const THREE_QUARTERS: DVec3 = DVec3::new(0.62, 0.48, 1.0);
+/// From the target to the eye: a little to the left, a little above. What is turned by 0, 30 or 45 degrees is seen from a corner.
+const THREE_QUARTERS: DVec3 = DVec3::new(-0.51, 0.48, 1.0);
 /// Room around what is seen.
 const MARGIN: f64 = 1.06;
 /// Rays end this many times farther than what is to be seen: an endless floor is endless, whatever the units.
@@ -89,6 +90,26 @@ fn focused(
         ));
     }
     Ok(camera.with_aperture(aperture, near))
+}
+
+/// A box that holds the surface of a field, for what looks at it: that of a formula is as small as a short search finds it,
+/// where the box it lives in may be far larger.
+pub(crate) fn surface(field: &Field) -> Aabb {
+    let bounds = field.facts().bounds;
+    match field.node() {
+        Node::Formula(formula) => formula.reach(),
+        Node::Place { placement, shape } => placement.bounds(&surface(shape)),
+        Node::Paint { shape, .. } | Node::Sided(shape) => surface(shape),
+        Node::Join {
+            entry,
+            shapes,
+            params,
+        } if entry.sharp => {
+            let of: Vec<Aabb> = shapes.iter().map(surface).collect();
+            (entry.bounds)(params, &of)
+        }
+        _ => bounds,
+    }
 }
 
 /// Columns right, up, backwards. `None` where `back` has no direction.

@@ -51,3 +51,4 @@ mod trees;
     reason = "files that change, and waiting for them"
 )]
 pub mod watch;
+mod welcome;

@@ -24,6 +24,8 @@ pub struct Options {
     pub limits: Limits,
     /// Whether the scene is wanted at all moments that its shutter is open ([`Scene::moments`]), else as it is at its time alone.
     pub moments: bool,
+    /// Whether only what the file itself shows is wanted: a scene that says nothing but what is shown gets no stage.
+    pub bare: bool,
 }
 
 /// How long a camera's shutter is open.

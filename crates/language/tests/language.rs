@@ -83,8 +83,8 @@ fn numbers() {
         abs(-3), abs(-3.5), sign(-2.0) => 3 3.5 -1
         min(3, 1, 2), max([3, 1, 2]) => 1 3
         pow(2, 10), hypot(3, 4), sqrt(16) => 1024.0 5.0 4.0
-        sin(90), cos(180), cos(90), sin(-90), cos(360) => 1.0 -1.0 0.0 -1.0 1.0
-        round(sin(30), 12), round(atan2(1, 1), 12), round(acos(0.5), 9), asin(1), atan(0) => 0.5 45.0 60.0 90.0 0.0
+        sin(pi / 2), cos(pi), sin(0), sin(-pi / 2), cos(tau) => 1.0 -1.0 0.0 -1.0 1.0
+        round(sin(pi / 6), 12), round(atan2(1, 1), 9), round(acos(0.5), 9), round(asin(1), 9), atan(0) => 0.5 0.785398163 1.047197551 1.570796327 0.0
         degrees(pi), radians(180) == pi => 180.0 True
         clamp(5, 0, 3), lerp(1, 3, 0.25) => 3.0 1.5
         lerp((0, 0), (2, 4)) => (1.0, 2.0)
@@ -250,7 +250,7 @@ fn a_scene_of_one_line() {
     let scene = &loaded.scene;
     assert_eq!(
         (scene.name(), scene.objects().len(), scene.lights().len()),
-        ("scene", 1, 1)
+        ("scene", 2, 3)
     );
     assert_eq!(scene.objects()[0].place, Some(("scene.star".into(), 1, 1)));
     // the ball stands in the middle of the picture and fills a good part of it
@@ -421,7 +421,7 @@ fn turns() {
 #[test]
 fn painted_parts() {
     let loaded = scene(
-        "show(sphere().paint('red') | box(1).paint(material(color = 'blue')) | sphere(2).paint('red'))",
+        "show(sphere().paint('red') | box(1).paint(material(color = 'blue')) | sphere(2).paint('red'))\nsun()",
     );
     // red, blue and the object's own
     assert_eq!(loaded.scene.materials().len(), 3);

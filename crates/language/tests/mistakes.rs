@@ -99,6 +99,89 @@ fn names_and_arguments() {
 }
 
 #[test]
+fn words_of_other_tools() {
+    cases(
+        "words_of_other_tools",
+        Language::Starlark,
+        &[
+            ("translate", "show(sphere().translate((1, 0, 0)))"),
+            ("rotate", "show(box().rotate(0.5, \"x\"))"),
+            ("orient", "show(cylinder().orient(\"x\"))"),
+            ("shell", "show(sphere().shell(0.1))"),
+            ("dilate", "show(sphere().dilate(0.1))"),
+            ("erode", "show(sphere().erode(0.1))"),
+            ("circular_array", "show(sphere().circular_array(8))"),
+            ("save", "sphere().save(\"out.stl\")"),
+            ("light", "light(position = (1, 2, 3))"),
+            ("background", "background(\"white\")"),
+            ("cube", "show(cube(1))"),
+            ("an axis", "show(box().turn(axis = X, angle = 30))"),
+            ("sides one by one", "show(box(1, 2, 3))"),
+            ("sides of a rectangle", "show(rectangle(1, 2).extrude(1))"),
+            ("a scale for each axis", "show(sphere().scale((1, 2, 1)))"),
+            (
+                "k for a radius",
+                "show(sphere().smooth_union(box(), k = 0.1))",
+            ),
+            ("r for a radius", "show(sphere(r = 2))"),
+            ("a diameter", "show(sphere(d = 2))"),
+            ("a centre", "show(sphere(1, center = (1, 0, 0)))"),
+            ("a module", "x = math.sqrt(2)"),
+            (
+                "a function as a statement",
+                "translate((1, 0, 0), sphere())",
+            ),
+            ("a power", "x = 2 ** 3"),
+        ],
+    );
+}
+
+#[test]
+fn formulas() {
+    cases(
+        "formulas",
+        Language::Starlark,
+        &[
+            (
+                "a number as a condition",
+                "show(field(lambda p: p.x and p.y))",
+            ),
+            (
+                "a vector as a condition",
+                "show(field(lambda p: 1 if p > 0 else 2))",
+            ),
+            ("a jump", "show(field(lambda p: 1 if p.x > 0 else p.y))"),
+            (
+                "a condition for a loop",
+                "show(field(lambda p: [c for c in p if c > 0][0]))",
+            ),
+            (
+                "a list that changes in a branch",
+                "def f(p):\n    l = []\n    if p.x > 0:\n        l.append(1)\n    return p.y\nshow(field(f))",
+            ),
+            (
+                "a plane shape at a point of space",
+                "c = circle()\nshow(field(lambda p: c(p)))",
+            ),
+            (
+                "a deformation that gives a number",
+                "show(sphere().map(lambda p: p.x))",
+            ),
+            (
+                "a displacement of what has no end",
+                "show(plane().displace(lambda p: noise(p)))",
+            ),
+            ("no value", "def f(p):\n    d = p.x\nshow(field(f))"),
+            ("an easing function", "x = ease(0.5, \"in_cubik\")"),
+            (
+                "a sharp turn",
+                "show(circle(1).sweep([(0, 0, 0), (1, 0, 0), (0.5, 0.1, 0)]))",
+            ),
+        ],
+    );
+}
+
+#[test]
 fn scenes() {
     cases(
         "scenes",

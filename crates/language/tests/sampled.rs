@@ -94,7 +94,7 @@ fn said(text: &str, limits: Limits) -> String {
 fn samples(field: &Field) -> Arc<Sampled> {
     match field.node() {
         Node::Sampled(sampled) => sampled.clone(),
-        _ => samples(&field.children()[0]),
+        _ => samples(field.children()[0]),
     }
 }
 

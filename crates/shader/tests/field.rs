@@ -242,11 +242,12 @@ fn every_operation_has_a_place() {
                 union(9, 10, 11),
             ],
             Operation::Warp(_) => [at(3, 0, 0), at(6, 3, 0), sphere(11, 6), union(10, 9, 11)],
+            Operation::Put(_) => [at(3, 9, 0), at(6, 9, 3), sphere(11, 6), union(10, 9, 11)],
             Operation::Change(_) => [at(10, 9, 0), at(11, 10, 3), at(10, 11, 6), at(9, 10, 0)],
             Operation::Pair(_) => [sphere(11, 0), at(10, 9, 11), at(12, 10, 11), at(9, 12, 11)],
             Operation::Mark(..) => panic!("marks have no functions"),
         });
-        if let Operation::Warp(_) = operation {
+        if let Operation::Warp(_) | Operation::Put(_) = operation {
             values.push(union(9, 10, 11));
         }
     }

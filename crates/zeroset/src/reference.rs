@@ -231,7 +231,7 @@ fn word(word: Word) -> Entry {
     };
     Entry {
         name: word.name,
-        kind: if word.method { "method" } else { "function" },
+        kind: word.kind,
         group: word.group,
         doc: word.doc,
         source: known.map_or("", |m| m.source),
@@ -446,6 +446,9 @@ pub(crate) fn signature(entry: &Entry) -> String {
         Some(_) => format!("{} = [...]", p.name),
         None => p.name.to_owned(),
     });
+    if entry.kind == "constant" {
+        return entry.name.to_owned();
+    }
     let first = (entry.kind == "join").then(|| "shapes".to_owned());
     let all: Vec<String> = first.into_iter().chain(parameters).collect();
     format!("{}({})", entry.name, all.join(", "))

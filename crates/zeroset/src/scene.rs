@@ -36,6 +36,7 @@ pub(crate) fn options(args: &SceneArgs, size: Option<[u32; 2]>) -> Result<Option
         size,
         limits,
         moments: false,
+        bare: false,
     })
 }
 

@@ -1,10 +1,13 @@
-//! `docs/fields.md` is what the catalogue says. `ZEROSET_BLESS=1 cargo test -p zeroset --test reference_page` writes it anew.
+//! `docs/fields.md` and the tables of `docs/formulas.md` and `docs/coming-from.md` are what the catalogue and the language say.
+//! `ZEROSET_BLESS=1 cargo test --workspace --test reference_page` writes them anew.
 
 use std::fmt::Write;
 use std::path::PathBuf;
 use zeroset::catalogue::bounds::Exactness;
 use zeroset::catalogue::entries::catalogue;
 use zeroset::catalogue::{self, Info, LARGE, Unit};
+use zeroset::language::load::{Language, Options, load_text};
+use zeroset::language::starlark::{SYNONYMS, Word, formula_functions, words};
 use zeroset::scene::methods::{GROUPS, Kind};
 
 fn number(x: f64, unit: Unit) -> String {
@@ -121,10 +124,182 @@ fn methods(out: &mut String) {
     }
 }
 
+/// How a word is written: with its parameters, those that may be left out with their defaults.
+fn signature(word: &Word) -> String {
+    if word.kind == "constant" {
+        return word.name.to_owned();
+    }
+    let params = word.params.iter().map(|(name, default, _)| match *default {
+        "" | "..." => (*name).to_owned(),
+        default => format!("{name} = {default}"),
+    });
+    let more = word.more.then(|| "...".to_owned());
+    let all: Vec<String> = params.chain(more).collect();
+    let dot = if word.kind.starts_with("method") {
+        "."
+    } else {
+        ""
+    };
+    format!("{dot}{}({})", word.name, all.join(", "))
+}
+
+/// The words of the language beside the catalogue: stage, materials, settings, mathematics, methods.
+fn language(out: &mut String) {
+    out.push_str("## The language\n\nFunctions, methods and constants beside the shapes. ");
+    out.push_str("Functions of numbers take radians, parameters called angle degrees; [formulas](formulas.md) have more.\n\n");
+    let words = words();
+    let mut groups: Vec<(&str, &str)> = Vec::new();
+    // a method of texts, lists or dicts stands with its like
+    let group = |word: &Word| match word.kind {
+        "method of a text" => ("", "Methods of texts"),
+        "method of a list" => ("", "Methods of lists"),
+        "method of a dict" => ("", "Methods of dicts"),
+        _ => (word.group, ""),
+    };
+    for word in &words {
+        if !groups.contains(&group(word)) {
+            groups.push(group(word));
+        }
+    }
+    for (name, title) in groups {
+        let title = if title.is_empty() { name } else { title };
+        writeln!(out, "**{title}**\n").unwrap();
+        for word in words
+            .iter()
+            .filter(|w| group(w) == (name, "") || group(w).1 == title)
+        {
+            writeln!(out, "### `{}`\n\n{}\n", signature(word), word.doc).unwrap();
+            let said: Vec<_> = word.params.iter().filter(|p| !p.2.is_empty()).collect();
+            if said.is_empty() {
+                continue;
+            }
+            out.push_str("| parameter | default | |\n| --- | --- | --- |\n");
+            for (name, default, doc) in said {
+                let default = if default.is_empty() {
+                    "must be given"
+                } else {
+                    default
+                };
+                writeln!(
+                    out,
+                    "| `{name}` | {} | {doc} |",
+                    default.replace('|', "\\|")
+                )
+                .unwrap();
+            }
+            out.push('\n');
+        }
+    }
+}
+
+/// A page with what stands between its marks written anew.
+fn between(page: &str, mark: &str, table: &str) -> String {
+    let begin = format!("<!-- {mark} -->\n");
+    let (before, rest) = page.split_once(&begin).expect("the mark of the table");
+    let (_, after) = rest
+        .split_once("<!-- end -->")
+        .expect("the end of the table");
+    format!("{before}{begin}\n{table}\n<!-- end -->{after}")
+}
+
+/// Holds a page of the documentation, or writes it.
+fn held(name: &str, wanted: impl FnOnce(&str) -> String) {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("../../docs")
+        .join(name);
+    let kept = std::fs::read_to_string(&path).unwrap_or_default();
+    let page = wanted(&kept);
+    if std::env::var_os("ZEROSET_BLESS").is_some() {
+        std::fs::write(&path, &page).unwrap();
+        return;
+    }
+    assert!(
+        kept == page,
+        "docs/{name} is not what the catalogue and the language say: \
+         ZEROSET_BLESS=1 cargo test --workspace --test reference_page"
+    );
+}
+
+#[test]
+fn the_functions_of_formulas_are_listed() {
+    held("formulas.md", |page| {
+        let mut table = String::from("| function | |\n| --- | --- |\n");
+        for word in formula_functions() {
+            writeln!(table, "| `{}` | {} |", signature(&word), word.doc).unwrap();
+        }
+        between(page, "functions", &table)
+    });
+}
+
+#[test]
+fn the_words_of_other_tools_are_listed() {
+    held("coming-from.md", |page| {
+        let mut table = String::from("| elsewhere | here |\n| --- | --- |\n");
+        for synonym in SYNONYMS {
+            let words: Vec<String> = synonym.words.iter().map(|w| format!("`{w}`")).collect();
+            writeln!(
+                table,
+                "| {} | {} |",
+                words.join(", "),
+                synonym.write.replace('|', "\\|")
+            )
+            .unwrap();
+        }
+        between(page, "words", &table)
+    });
+}
+
+/// Everything that `zeroset fields` explains stands on the page.
+#[test]
+fn no_name_is_missing() {
+    let page = page();
+    for word in words() {
+        assert!(
+            page.contains(&format!("### `{}`", signature(&word))),
+            "{}",
+            word.name
+        );
+    }
+    for info in catalogue().infos() {
+        assert!(
+            page.contains(&format!("### `{}`", info.name)),
+            "{}",
+            info.name
+        );
+    }
+}
+
+/// Examples of the pages are scenes.
+#[test]
+fn examples_load() {
+    for name in ["formulas.md", "coming-from.md"] {
+        let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+            .join("../../docs")
+            .join(name);
+        let page = std::fs::read_to_string(&path).unwrap();
+        let mut count = 0;
+        for block in page.split("```python\n").skip(1) {
+            let (text, _) = block.split_once("```").expect("the end of an example");
+            let loaded = load_text(
+                "scene.star",
+                text,
+                Language::Starlark,
+                None,
+                &Options::default(),
+            );
+            if let Err(failed) = loaded {
+                panic!("{name}: {}\n{text}", failed.report);
+            }
+            count += 1;
+        }
+        assert!(count >= 3, "{name}");
+    }
+}
+
 fn page() -> String {
     let all = catalogue();
     let mut out = String::from(
-        "# Field reference\n\nGenerated from the catalogue of fields and the registry of methods: the same as `zeroset fields`. Lengths are scene units, angles \
+        "# Field reference\n\nGenerated from the catalogue of fields, the words of the language and the registry of methods: the same as `zeroset fields`. Lengths are scene units, angles \
          degrees, rates degrees a unit. *Exact* is the distance everywhere, *exact outside* a bound inside, a *bound* never \
          more than the distance, an *estimate* is not proven.\n\n",
     );
@@ -156,6 +331,7 @@ fn page() -> String {
         "Changes of space",
         all.maps.iter().map(|e| (&e.info, String::new())),
     );
+    language(&mut out);
     methods(&mut out);
     out.truncate(out.trim_end().len());
     out.push('\n');
@@ -164,14 +340,5 @@ fn page() -> String {
 
 #[test]
 fn the_reference_page_is_what_the_catalogue_says() {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../docs/fields.md");
-    let page = page();
-    if std::env::var_os("ZEROSET_BLESS").is_some() {
-        std::fs::write(&path, &page).unwrap();
-    }
-    let kept = std::fs::read_to_string(&path).unwrap_or_default();
-    assert!(
-        kept == page,
-        "docs/fields.md is not what the catalogue says: ZEROSET_BLESS=1 cargo test -p zeroset --test reference_page"
-    );
+    held("fields.md", |_| page());
 }

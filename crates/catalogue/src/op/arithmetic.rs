@@ -1,7 +1,9 @@
 //! The arithmetic of free-form formulas, one operation each.
 
-use super::{Change, Kept, Leaf, Pair};
-use zeroset_number::{Args, Real, SingleInterval, Vec3, length2};
+use super::{Change, Kept, Leaf, Pair, Put};
+use crate::noise::{CellularNoise, GradientNoise, Noise, ValueNoise};
+use std::marker::PhantomData;
+use zeroset_number::{Args, Real, SingleInterval, Vec3, length2, v3};
 
 /// A function of one number. Angles are radians.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -80,11 +82,17 @@ pub enum Binary {
     Atan2,
     /// `sqrt(x^2 + y^2)`: a function of its own because its slope is bounded where the root's is not.
     Hypot,
+    /// 1 where x is below y, else 0: a condition.
+    Less,
+    /// y where the condition x holds (is above 1/2), else [`NOTHING`]: one half of a choice.
+    When,
+    /// x unless it is [`NOTHING`], else y: a choice of two halves, of which one is nothing wherever the other is not.
+    Either,
 }
 
 impl Binary {
     /// All of them.
-    pub const ALL: [Binary; 10] = [
+    pub const ALL: [Binary; 13] = [
         Binary::Add,
         Binary::Sub,
         Binary::Mul,
@@ -95,6 +103,9 @@ impl Binary {
         Binary::Pow,
         Binary::Atan2,
         Binary::Hypot,
+        Binary::Less,
+        Binary::When,
+        Binary::Either,
     ];
 }
 
@@ -115,6 +126,69 @@ impl Leaf for Constant {
     #[inline(always)]
     fn leaf<R: Real>(p: Vec3<R>, a: Args<'_, R>) -> R {
         p.x.like(a.get(0))
+    }
+}
+
+/// The half of a choice that does not count: beyond every value that a formula may have.
+pub const NOTHING: f32 = 3e38;
+
+/// The coordinate of this number of a point, replaced by a value.
+pub struct Component<const AXIS: usize>;
+
+impl<const AXIS: usize> Put for Component<AXIS> {
+    #[inline(always)]
+    fn put<R: Real>(d: R, p: Vec3<R>) -> Vec3<R> {
+        match AXIS {
+            0 => v3(d, p.y, p.z),
+            1 => v3(p.x, d, p.z),
+            _ => v3(p.x, p.y, d),
+        }
+    }
+}
+
+/// The point's x in place of the value, whose marks it takes: what a formula made of a painted field.
+pub struct Replaced;
+
+impl Change for Replaced {
+    const READS_POINT: bool = true;
+    #[inline(always)]
+    fn change<R: Real>(_d: R, p: Vec3<R>, _a: Args<'_, R>) -> R {
+        p.x
+    }
+}
+
+/// A noise at the point.
+pub struct NoiseAt<N>(PhantomData<N>);
+
+impl<N: Noise> Leaf for NoiseAt<N> {
+    #[inline(always)]
+    fn leaf<R: Real>(p: Vec3<R>, _a: Args<'_, R>) -> R {
+        N::noise(p)
+    }
+}
+
+/// Which noise a formula may hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum NoiseKind {
+    /// See [`ValueNoise`].
+    Value,
+    /// See [`GradientNoise`].
+    Gradient,
+    /// See [`CellularNoise`].
+    Cellular,
+}
+
+impl NoiseKind {
+    /// All of them.
+    pub const ALL: [NoiseKind; 3] = [NoiseKind::Value, NoiseKind::Gradient, NoiseKind::Cellular];
+}
+
+/// The noise of this kind at a point.
+pub fn noise<R: Real>(kind: NoiseKind, p: Vec3<R>) -> R {
+    match kind {
+        NoiseKind::Value => ValueNoise::noise(p),
+        NoiseKind::Gradient => GradientNoise::noise(p),
+        NoiseKind::Cellular => CellularNoise::noise(p),
     }
 }
 
@@ -230,5 +304,10 @@ binary! {
     /// Angle of (y, x): the first operand is the ordinate.
     Atan2 |x, y| x.atan2(y);
     /// `sqrt(x^2 + y^2)`
-    Hypot |x, y| length2(x, y);
+    Hypot |x, y| length2(x, y);    /// 1 where x is below y, else 0.
+    Less |x, y| R::choose((x - y).below(0.0), x.lit(1.0), x.lit(0.0));
+    /// y where x is above 1/2, else [`NOTHING`].
+    When |x, y| R::choose(x.above(0.5), y, y.lit(NOTHING));
+    /// x unless it is [`NOTHING`], else y.
+    Either |x, y| R::select(x.below(0.5 * NOTHING), x, y);
 }

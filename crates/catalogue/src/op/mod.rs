@@ -1,9 +1,9 @@
 //! Operations: what an [`Instruction`](crate::tape::Instruction) does.
 //!
-//! There are four kinds, told apart by what they take and give. The catalogue's entries are operations, and so are a few
+//! There are five kinds, told apart by what they take and give. The catalogue's entries are operations, and so are a few
 //! that only the compiler emits: placements, the arithmetic of free-form formulas, grids of samples, the walls of repetitions. Every
-//! evaluator is generated from the lists `each_leaf!`, `each_warp!`, `each_change!` and `each_pair!`, in which the
-//! catalogue comes first.
+//! evaluator is generated from the lists `each_leaf!`, `each_warp!`, `each_put!`, `each_change!` and `each_pair!`, in
+//! which the catalogue comes first.
 
 use crate::{Join, Map, Modify, Primitive};
 use std::marker::PhantomData;
@@ -91,6 +91,12 @@ pub trait Warp: 'static {
     fn warp<R: Real>(p: Vec3<R>, a: Args<'_, R>) -> Vec3<R>;
 }
 
+/// A value and a point in, the point out with one of its coordinates replaced.
+pub trait Put: 'static {
+    /// The formula.
+    fn put<R: Real>(d: R, p: Vec3<R>) -> Vec3<R>;
+}
+
 /// A value and the point it belongs to in, a value out.
 pub trait Change: 'static {
     /// Whether the formula reads the point. What does not read it does not keep it alive either.
@@ -170,6 +176,9 @@ macro_rules! with_own_leaves {
             $crate::op::arithmetic::Coordinate<2>,
             $crate::op::arithmetic::Constant,
             $crate::op::grid::Sampled,
+            $crate::op::arithmetic::NoiseAt<$crate::noise::ValueNoise>,
+            $crate::op::arithmetic::NoiseAt<$crate::noise::GradientNoise>,
+            $crate::op::arithmetic::NoiseAt<$crate::noise::CellularNoise>,
         }
     };
 }
@@ -190,6 +199,19 @@ macro_rules! with_own_warps {
             $crate::op::domain::Clamp,
             $crate::op::domain::RepeatCell,
             $crate::op::domain::PolarCell,
+        }
+    };
+}
+
+/// Calls `$then!` with the type of every [`Put`].
+#[doc(hidden)]
+#[macro_export]
+macro_rules! each_put {
+    ($then:ident $($args:tt)*) => {
+        $then! { $($args)*
+            $crate::op::arithmetic::Component<0>,
+            $crate::op::arithmetic::Component<1>,
+            $crate::op::arithmetic::Component<2>,
         }
     };
 }
@@ -223,6 +245,7 @@ macro_rules! with_own_changes {
             $crate::op::arithmetic::Exp,
             $crate::op::arithmetic::Ln,
             $crate::op::arithmetic::Tanh,
+            $crate::op::arithmetic::Replaced,
         }
     };
 }
@@ -248,13 +271,16 @@ macro_rules! with_own_pairs {
             $crate::op::arithmetic::Pow,
             $crate::op::arithmetic::Atan2,
             $crate::op::arithmetic::Hypot,
+            $crate::op::arithmetic::Less,
+            $crate::op::arithmetic::When,
+            $crate::op::arithmetic::Either,
         }
     };
 }
 
 /// Codes of the operations that only the compiler emits: their places behind the catalogue's in the lists above.
 pub mod code {
-    use super::arithmetic::{Binary, Unary};
+    use super::arithmetic::{Binary, NoiseKind, Unary};
 
     macro_rules! count {
         ($($entry:path,)*) => { [$(stringify!($entry)),*].len() as u16 };
@@ -290,6 +316,14 @@ pub mod code {
     pub const POLAR_WALL: u16 = MODIFIERS + 3;
     /// The smaller of two numbers.
     pub const MIN: u16 = JOINS + Binary::Min as u16;
+
+    /// See [`arithmetic::Replaced`](super::arithmetic::Replaced).
+    pub const REPLACED: u16 = MODIFIERS + 4 + Unary::ALL.len() as u16;
+
+    /// Code of a noise.
+    pub const fn noise(kind: NoiseKind) -> u16 {
+        PRIMITIVES + 5 + kind as u16
+    }
 
     /// Code of a function of one number.
     pub const fn unary(f: Unary) -> u16 {

@@ -1,10 +1,13 @@
 //! Writing a formula down.
 
+use super::inner::Inner;
 use super::print::{number, text};
-use super::{Binary, FormulaStep, LARGEST, Steps, Unary};
+use super::{Binary, FormulaStep, LARGEST, NoiseKind, Steps, Unary};
+use crate::field::Field;
 use std::collections::HashMap;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use zeroset_catalogue::Dimension;
 use zeroset_catalogue::op::arithmetic;
 use zeroset_number::F64;
 
@@ -61,6 +64,12 @@ pub enum BuildError {
         /// Number of arguments given.
         given: usize,
     },
+    /// A field that is called at a point of the wrong length, or that is too large.
+    #[error("{reason}")]
+    Field {
+        /// Why, and what to do.
+        reason: String,
+    },
     /// A value that is a vector.
     #[error(
         "the value of a formula is one number, this is a vector of {parts}; length(...) makes a number of it"
@@ -85,6 +94,7 @@ pub struct Builder(Arc<Mutex<State>>);
 struct State {
     steps: Vec<FormulaStep>,
     known: HashMap<StepKey, u32>,
+    fields: Vec<Inner>,
     limit: usize,
     failure: Option<BuildError>,
 }
@@ -94,6 +104,8 @@ struct State {
 enum StepKey {
     Unary(Unary, u32),
     Binary(Binary, u32, u32),
+    Noise(NoiseKind, [u32; 3]),
+    Field(u32, [u32; 3]),
 }
 
 /// Coordinates, which are always the first steps.
@@ -120,6 +132,7 @@ impl Builder {
         Builder(Arc::new(Mutex::new(State {
             steps: COORDINATES.to_vec(),
             known: HashMap::new(),
+            fields: Vec::new(),
             limit: limit.min(MAX_STEPS),
             failure: None,
         })))
@@ -189,6 +202,91 @@ impl Builder {
         self.expression(&out[..n])
     }
 
+    /// A noise at a point of 3 numbers, or of 2 in the plane z = 0.
+    pub fn noise(&self, kind: NoiseKind, p: &Expression) -> Expression {
+        let needs = ("noise", "a point of 2 or 3 numbers");
+        self.at_point(p, needs, |state, q| state.noise(kind, q))
+    }
+
+    /// The value of a field at a point of 3 numbers; of a plane shape, at one of 2.
+    pub fn field(&self, field: &Field, p: &Expression) -> Expression {
+        let plane = field.facts().dimension == Dimension::Two;
+        match (plane, p.parts()) {
+            (true, 2) | (false, 3) => {}
+            (true, _) => {
+                return self.fail(BuildError::Field {
+                    reason: format!(
+                        "a plane shape is asked at (x, y), as in s(p.xy), not at {}",
+                        p.spoken()
+                    ),
+                });
+            }
+            (false, _) => {
+                return self.fail(BuildError::Field {
+                    reason: format!(
+                        "a field is asked at a point (x, y, z), not at {}",
+                        p.spoken()
+                    ),
+                });
+            }
+        }
+        let key = field.key();
+        let known = self
+            .state()
+            .fields
+            .iter()
+            .position(|f| f.field().key() == key);
+        let number = match known {
+            Some(number) => number,
+            None => match Inner::new(field) {
+                Ok(inner) => {
+                    let mut state = self.state();
+                    state.fields.push(inner);
+                    state.fields.len() - 1
+                }
+                Err(e) => {
+                    return self.fail(BuildError::Field {
+                        reason: e.to_string(),
+                    });
+                }
+            },
+        };
+        let needs = ("a field", "a point");
+        self.at_point(p, needs, |state, q| state.field(number as u32, q))
+    }
+
+    /// What `value` gives at the steps of a point, the third of which is 0 where there are two.
+    fn at_point(
+        &self,
+        p: &Expression,
+        (function, wanted): (&'static str, &'static str),
+        value: impl FnOnce(&mut State, [u32; 3]) -> u32,
+    ) -> Expression {
+        if !self.owns(p) {
+            return self.fail(BuildError::Foreign);
+        }
+        let step = {
+            let mut state = self.state();
+            let q = match *p.steps() {
+                [x, y, z] => Some([x, y, z]),
+                [x, y] => Some([x, y, state.constant(0.0)]),
+                _ => None,
+            };
+            q.map(|q| value(&mut state, q))
+        };
+        match step {
+            Some(step) => self.expression(&[step]),
+            None => {
+                let given = p.spoken();
+                self.fail(BuildError::Parts {
+                    function,
+                    wanted,
+                    given,
+                })
+            }
+        }
+    }
+
     /// Whether all went well so far.
     ///
     /// # Errors
@@ -226,14 +324,26 @@ impl Builder {
             if used[step] {
                 renamed[step] = steps.len() as u32;
                 let name = |x: u32| renamed[x as usize];
-                steps.push(match state.steps[step] {
-                    FormulaStep::Unary(f, x) => FormulaStep::Unary(f, name(x)),
-                    FormulaStep::Binary(f, x, y) => FormulaStep::Binary(f, name(x), name(y)),
-                    leaf => leaf,
-                });
+                steps.push(state.steps[step].renamed(name));
             }
         }
-        Ok(Steps(steps))
+        // fields that are not needed are left out too
+        let mut numbers: Vec<u32> = Vec::new();
+        for step in &mut steps {
+            if let FormulaStep::Field(field, _) = step {
+                let place = numbers.iter().position(|n| n == field);
+                let place = place.unwrap_or_else(|| {
+                    numbers.push(*field);
+                    numbers.len() - 1
+                });
+                *field = place as u32;
+            }
+        }
+        let fields = numbers.iter().map(|n| state.fields[*n as usize].clone());
+        Ok(Steps {
+            list: steps,
+            fields: fields.collect(),
+        })
     }
 
     /// Remembers a mistake; what is given back stands for the value that there is not.
@@ -270,6 +380,7 @@ fn whole(power: f64) -> Option<i32> {
 /// Steps in which whole powers are written as products, as [`Builder`] writes them.
 pub(super) fn without_whole_powers(
     steps: Vec<FormulaStep>,
+    fields: &[Inner],
 ) -> Result<Vec<FormulaStep>, BuildError> {
     let is_whole = |step: &FormulaStep| match *step {
         FormulaStep::Binary(Binary::Pow, _, n) => {
@@ -283,6 +394,7 @@ pub(super) fn without_whole_powers(
     let builder = Builder::new();
     let last = {
         let mut state = builder.state();
+        state.fields = fields.to_vec();
         let mut names: Vec<u32> = Vec::with_capacity(steps.len());
         for step in &steps {
             let name = match *step {
@@ -292,13 +404,17 @@ pub(super) fn without_whole_powers(
                 FormulaStep::Binary(f, x, y) => {
                     state.binary(f, names[x as usize], names[y as usize])
                 }
+                FormulaStep::Noise(kind, q) => state.noise(kind, q.map(|x| names[x as usize])),
+                FormulaStep::Field(i, q) => state.field(i, q.map(|x| names[x as usize])),
             };
             names.push(name);
         }
         names.last().copied().unwrap_or_default()
     };
-    let value = builder.expression(&[last]);
-    builder.finish(&value).map(|steps| steps.0)
+    builder.check()?;
+    let state = builder.state();
+    // all of them: the order of fields stays
+    Ok(state.steps[..=last as usize].to_vec())
 }
 
 impl State {
@@ -374,6 +490,7 @@ impl State {
         }
         if let (FormulaStep::Constant(a), FormulaStep::Constant(b)) =
             (self.steps[x as usize], self.steps[y as usize])
+            && !matches!(f, Binary::When | Binary::Either)
         {
             if f == Binary::Pow && a < 0.0 {
                 let (base, power) = (a, b);
@@ -408,6 +525,23 @@ impl State {
             return known;
         }
         let step = self.push(FormulaStep::Binary(f, x, y));
+        self.known.insert(key, step);
+        step
+    }
+
+    fn noise(&mut self, kind: NoiseKind, q: [u32; 3]) -> u32 {
+        self.once(StepKey::Noise(kind, q), FormulaStep::Noise(kind, q))
+    }
+
+    fn field(&mut self, field: u32, q: [u32; 3]) -> u32 {
+        self.once(StepKey::Field(field, q), FormulaStep::Field(field, q))
+    }
+
+    fn once(&mut self, key: StepKey, step: FormulaStep) -> u32 {
+        if let Some(&known) = self.known.get(&key) {
+            return known;
+        }
+        let step = self.push(step);
         self.known.insert(key, step);
         step
     }
@@ -700,7 +834,7 @@ impl Expression {
         let o = o.beside(self);
         if (self.parts, o.parts) != (3, 3) {
             return self.builder.fail(BuildError::Parts {
-                function: "cross_product",
+                function: "cross",
                 wanted: "two vectors of 3",
                 given: format!("{} and {}", self.spoken(), o.spoken()),
             });
@@ -712,6 +846,121 @@ impl Expression {
     /// The vector of length 1 in the same direction. It jumps where the vector is zero.
     pub fn normalize(&self) -> Expression {
         self / self.length()
+    }
+
+    /// 1 where self is below `o`, else 0: a condition, for [`Expression::choose`] and the like.
+    pub fn less(&self, o: impl Operand) -> Expression {
+        self.builder.binary(Binary::Less, self, &o.beside(self))
+    }
+
+    /// Whether a condition does not hold.
+    pub fn negated(&self) -> Expression {
+        1.0 - self
+    }
+
+    /// Where self, a condition, holds, `yes`, else `no`. The slope is proven where the two agree wherever the condition
+    /// flips: where replacing one side of each comparison in it by the other makes them equal.
+    pub fn choose(&self, yes: impl Operand, no: impl Operand) -> Expression {
+        let (yes, no) = (yes.beside(self), no.beside(self));
+        match self.as_constant() {
+            Some(c) if c > 0.5 => return yes,
+            Some(_) => return no,
+            None => {}
+        }
+        let same = yes.steps() == no.steps();
+        if same {
+            return yes;
+        }
+        let halves = (
+            self.builder.binary(Binary::When, self, &yes),
+            self.builder.binary(Binary::When, &self.negated(), &no),
+        );
+        self.builder.binary(Binary::Either, &halves.0, &halves.1)
+    }
+
+    /// A vector of 3 turned about an axis by an angle in radians, counter-clockwise where the axis points at you (Rodrigues
+    /// 1840).
+    pub fn rotate(&self, axis: [f64; 3], theta: impl Operand) -> Expression {
+        if self.parts != 3 {
+            return self.builder.fail(BuildError::Parts {
+                function: "rotate",
+                wanted: "a vector of 3, an axis and an angle",
+                given: self.spoken(),
+            });
+        }
+        let theta = theta.beside(self);
+        let (s, c) = (theta.sin(), theta.cos());
+        let length = axis[0].hypot(axis[1]).hypot(axis[2]);
+        let number = |k: usize| self.builder.constant(axis[k] / length);
+        // along an axis of coordinates two parts turn and the third stays
+        if let Some(k) = (0..3).find(|&k| axis[k].abs() == length) {
+            let s = if axis[k] < 0.0 { -s } else { s };
+            let (u, v) = (self.part((k + 1) % 3), self.part((k + 2) % 3));
+            let turned = [self.part(k), &u * &c - &v * &s, &u * &s + &v * &c];
+            let place = |i: usize| turned[(i + 3 - k) % 3].clone();
+            return self.builder.vector(&[place(0), place(1), place(2)]);
+        }
+        let n = self.builder.vector(&[number(0), number(1), number(2)]);
+        let along = self.dot(&n) * (1.0 - &c);
+        self * c + n.cross(self) * s + n * along
+    }
+
+    /// A vector of 2 turned by an angle in radians, from the first part towards the second.
+    pub fn turned(&self, theta: impl Operand) -> Expression {
+        if self.parts != 2 {
+            return self.builder.fail(BuildError::Parts {
+                function: "rotate",
+                wanted: "a vector of 2 and an angle",
+                given: self.spoken(),
+            });
+        }
+        let theta = theta.beside(self);
+        let (s, c) = (theta.sin(), theta.cos());
+        let (x, y) = (self.x(), self.y());
+        self.builder.vector(&[&x * &c - &y * &s, x * s + y * c])
+    }
+
+    /// The smaller, with the edge between the two rounded where they differ by less than `k`: the quadratic polynomial of
+    /// Quilez 2013, `min(a, b) - h^2 / (4 k)` with `h = max(k - |a - b|, 0)`.
+    pub fn smooth_min(&self, o: impl Operand, k: impl Operand) -> Expression {
+        let (o, k) = (o.beside(self), k.beside(self));
+        let h = (&k - (self - &o).abs()).max(0.0);
+        self.min(o) - h.square() / (k * 4.0)
+    }
+
+    /// A fractal sum of noises at a point: the mean of `octaves` layers, each twice as fine and half as strong as the one
+    /// before, turned and moved against it (Musgrave 1993; the same as [`zeroset_catalogue::noise::fbm`]).
+    pub fn fbm(&self, kind: NoiseKind, octaves: u32) -> Expression {
+        let mut q = match self.parts {
+            2 => self
+                .builder
+                .vector(&[self.clone(), self.builder.constant(0.0)]),
+            _ => self.clone(),
+        };
+        let (mut sum, mut weights, mut weight) = (self.builder.constant(0.0), 0.0, 1.0);
+        for layer in 0..octaves {
+            let noise = self.builder.noise(kind, &q);
+            if noise.parts() != 1 || q.parts() != 3 {
+                return noise;
+            }
+            sum = if layer == 0 {
+                noise
+            } else {
+                sum + noise * weight
+            };
+            weights += weight;
+            weight *= 0.5;
+            let (x, y, z) = (q.x(), q.y(), q.z());
+            // (2, -1, 2), (2, 2, -1), (-1, 2, 2) over 3: a rotation
+            let turned = self.builder.vector(&[
+                (&x + &z) * 2.0 - &y,
+                (&x + &y) * 2.0 - &z,
+                (&y + &z) * 2.0 - &x,
+            ]);
+            let moved = [19.1, 7.7, 13.3].map(|c| self.builder.constant(c));
+            q = turned * (2.0 / 3.0) + self.builder.vector(&moved);
+        }
+        sum / weights
     }
 
     /// The smallest part.

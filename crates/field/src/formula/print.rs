@@ -1,6 +1,6 @@
 //! Steps as text, for messages.
 
-use super::{Binary, FormulaStep, Unary};
+use super::{Binary, FormulaStep, NoiseKind, Unary};
 
 /// Longest text of a step; what does not fit is left out.
 const LONGEST: usize = 72;
@@ -39,7 +39,51 @@ fn write(steps: &[FormulaStep], step: u32, depth: u32, within: Tie) -> Option<St
             enclosed(format!("{x} * {x}"), Tie::Product, within)
         }
         FormulaStep::Unary(f, x) => format!("{}({})", unary(f), operand(x, Tie::Sum)?),
+        FormulaStep::Noise(_, q) | FormulaStep::Field(_, q) => {
+            let name = match steps[step as usize] {
+                FormulaStep::Noise(kind, _) => noise(kind).to_owned(),
+                _ => "shape".to_owned(),
+            };
+            match point(steps, q) {
+                Some(p) => format!("{name}({p})"),
+                None => {
+                    let [x, y, z] = q.map(|i| operand(i, Tie::Sum));
+                    format!("{name}({}, {}, {})", x?, y?, z?)
+                }
+            }
+        }
         FormulaStep::Binary(f, x, y) => match f {
+            Binary::Less => enclosed(
+                format!("{} < {}", operand(x, Tie::Sum)?, operand(y, Tie::Sum)?),
+                Tie::Sum,
+                within,
+            ),
+            Binary::Sub if is_condition(steps, y) => format!("not {}", operand(y, Tie::Whole)?),
+            Binary::Min if is_condition(steps, x) => {
+                format!(
+                    "{} and {}",
+                    operand(x, Tie::Product)?,
+                    operand(y, Tie::Product)?
+                )
+            }
+            Binary::Max if is_condition(steps, x) => {
+                format!(
+                    "{} or {}",
+                    operand(x, Tie::Product)?,
+                    operand(y, Tie::Product)?
+                )
+            }
+            Binary::Either => match (steps[x as usize], steps[y as usize]) {
+                (FormulaStep::Binary(Binary::When, c, a), FormulaStep::Binary(_, _, b)) => {
+                    let [a, c, b] = [a, c, b].map(|i| operand(i, Tie::Sum));
+                    enclosed(format!("{} if {} else {}", a?, c?, b?), Tie::Sum, within)
+                }
+                _ => format!(
+                    "either({}, {})",
+                    operand(x, Tie::Sum)?,
+                    operand(y, Tie::Sum)?
+                ),
+            },
             Binary::Add => enclosed(
                 format!("{} + {}", operand(x, Tie::Sum)?, operand(y, Tie::Sum)?),
                 Tie::Sum,
@@ -77,6 +121,38 @@ fn write(steps: &[FormulaStep], step: u32, depth: u32, within: Tie) -> Option<St
         },
     };
     (text.len() <= 2 * LONGEST).then_some(text)
+}
+
+/// Whether a step is a condition.
+fn is_condition(steps: &[FormulaStep], step: u32) -> bool {
+    let mut step = step;
+    loop {
+        step = match steps[step as usize] {
+            FormulaStep::Binary(Binary::Less, ..) => return true,
+            FormulaStep::Binary(Binary::Min | Binary::Max, x, _) => x,
+            FormulaStep::Binary(Binary::Sub, one, x)
+                if steps[one as usize] == FormulaStep::Constant(1.0) =>
+            {
+                x
+            }
+            _ => return false,
+        }
+    }
+}
+
+/// `p`, where three steps are the point itself.
+fn point(steps: &[FormulaStep], q: [u32; 3]) -> Option<&'static str> {
+    let is = |k: usize| steps[q[k] as usize] == FormulaStep::Coordinate(k as u8);
+    (is(0) && is(1) && is(2)).then_some("p")
+}
+
+/// The name of a noise in the scene language.
+pub(crate) fn noise(kind: NoiseKind) -> &'static str {
+    match kind {
+        NoiseKind::Value => "value_noise",
+        NoiseKind::Gradient => "noise",
+        NoiseKind::Cellular => "cellular_noise",
+    }
 }
 
 fn enclosed(text: String, tie: Tie, within: Tie) -> String {
@@ -142,5 +218,8 @@ pub(crate) fn binary(f: Binary) -> &'static str {
         Binary::Pow => "pow",
         Binary::Atan2 => "atan2",
         Binary::Hypot => "length",
+        Binary::Less => "less",
+        Binary::When => "when",
+        Binary::Either => "either",
     }
 }

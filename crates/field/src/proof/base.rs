@@ -46,10 +46,15 @@ pub(crate) fn bases(tape: &ProofTape, bounds: &Aabb, budget: &Budget) -> Result<
         tape.jets(&cell, &mut jets);
         let [x, y, z] = cell.centre().map(F64);
         tape.eval(v3(x, y, z), &mut values);
-        let mut doubtful = None;
+        let (mut doubtful, alive) = (None, tape.alive(&jets));
         for (&(step, base), &hair) in all.iter().zip(&hair) {
+            if alive.as_ref().is_some_and(|alive| !alive[step]) {
+                continue;
+            }
             let (jet, middle) = (&jets[base], values[base].0);
-            if middle < -hair {
+            // where a choice may leave it out, what it has in the middle says nothing
+            let certain = alive.is_none();
+            if certain && middle < -hair {
                 return Err(refused(tape, &jets, (step, base), &cell, true));
             }
             // the nearer the base is to its smallest value, the flatter it is: this bound closes in faster than the range

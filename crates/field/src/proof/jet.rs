@@ -1,9 +1,10 @@
 //! What is known of a step of a formula over a box.
 
+use crate::formula::Inner;
 use std::f64::consts::PI;
 use zeroset_catalogue::op::arithmetic::{self, TINY};
-use zeroset_catalogue::op::arithmetic::{Binary, Unary};
-use zeroset_number::{Interval, Real, Slope};
+use zeroset_catalogue::op::arithmetic::{Binary, NoiseKind, Unary};
+use zeroset_number::{F64, Interval, Real, Slope, v3};
 
 /// What is known of a step over a box: ranges of its value and gradient, and more that [`Slope`] does not hold.
 #[derive(Clone, Copy, Debug)]
@@ -167,6 +168,63 @@ impl Jet {
             slope.v = WHOLE;
         }
         Jet::new(slope, relative * UP, turned)
+    }
+
+    /// A noise at a point of three steps.
+    pub(crate) fn noise(kind: NoiseKind, [x, y, z]: [&Jet; 3]) -> Jet {
+        let slope = arithmetic::noise(kind, v3(x.slope, y.slope, z.slope));
+        Jet::new(slope, f64::INFINITY, x.turned || y.turned || z.turned)
+    }
+
+    /// The value of a field at a point of three steps. What is known of it is its value in the middle of where that point may
+    /// be, and that it changes by no more than its Lipschitz constant times the way.
+    pub(crate) fn field(field: &Inner, q: [&Jet; 3]) -> Jet {
+        // a hair more: the program holds the field's numbers in single precision
+        let lipschitz = (field.field().facts().slope * (1.0 + 1e-6)) as f32;
+        let lipschitz = lipschitz.next_up();
+        let ranges = q.map(|jet| jet.slope.v);
+        let mut v = WHOLE;
+        if ranges.into_iter().all(is_finite) {
+            let middle = ranges.map(|r| 0.5 * (r.lo + r.hi));
+            let [x, y, z] = middle.map(F64);
+            let value = field.value(v3(x, y, z)).0;
+            let half = ranges.map(|r| 0.5 * (r.hi - r.lo));
+            let way = half[0].hypot(half[1]).hypot(half[2]) * UP;
+            let change = f64::from(lipschitz) * way + 1e-6 * value.abs();
+            if value.is_finite() {
+                v = Interval {
+                    lo: value - change,
+                    hi: value + change,
+                };
+            }
+        }
+        let [x, y, z] = q.map(|jet| jet.slope);
+        let anything = Slope {
+            v,
+            d: [WHOLE; 3],
+            l: f64::INFINITY,
+        };
+        let slope = anything.proven(f32::NEG_INFINITY, f32::INFINITY, v3(x, y, z), lipschitz);
+        Jet::new(slope, f64::INFINITY, q.iter().any(|jet| jet.turned))
+    }
+
+    /// A condition or half a choice, whose jumps are the choice's to account for.
+    pub(crate) fn quiet(mut self) -> Jet {
+        self.slope.d = [ZERO; 3];
+        self.slope.l = 0.0;
+        self.turned = false;
+        self
+    }
+
+    /// One of two steps, nobody knows which.
+    pub(crate) fn one_of(x: &Jet, y: &Jet) -> Jet {
+        let (a, b) = (x.slope, y.slope);
+        let slope = Slope {
+            v: a.v.hull(b.v),
+            d: std::array::from_fn(|k| a.d[k].hull(b.d[k])),
+            l: a.l.max(b.l),
+        };
+        Jet::new(slope, x.relative.max(y.relative), x.turned || y.turned)
     }
 
     /// The sum of two steps one of which is 0 wherever the other is not.

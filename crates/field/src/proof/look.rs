@@ -48,7 +48,9 @@ pub(crate) fn cut(
     budget: &Budget,
 ) -> Option<[f64; 3]> {
     let whole = Cell::of(bounds);
-    let hair = 1e-6 * slope * whole.longest();
+    let last = tape.steps().len() - 1;
+    let along = (0..3).filter(|&k| tape.reaches(last, k));
+    let hair = 1e-6 * slope * along.map(|k| whole.side(k)).fold(0.0, f64::max);
     let (mut jets, mut values) = (Vec::new(), Vec::new());
     let mut heap = BinaryHeap::new();
     let mut looked = 0;
@@ -72,7 +74,11 @@ pub(crate) fn cut(
         (waiting, middle < -hair, looked)
     };
     let mut found = Vec::new();
+    // nothing ends along an axis that the formula does not know: it is a plane shape, or cut as is said elsewhere
     for k in 0..3 {
+        if k == 2 && !tape.reaches(last, k) && bounds.max[k] >= zeroset_catalogue::LARGE {
+            continue;
+        }
         for side in [bounds.min[k], bounds.max[k]] {
             let mut cell = whole;
             (cell.min[k], cell.max[k]) = (side, side);
@@ -95,4 +101,46 @@ pub(crate) fn cut(
         }
         found.extend(lowest.cell.split(lowest.axis).map(&mut look));
     }
+}
+
+/// A box that holds all places of `bounds` where the formula may be 0 or below, as small as a short search finds it: cells that
+/// are cut away where the formula is above 0.
+pub(crate) fn reach(tape: &ProofTape, bounds: &Aabb) -> Aabb {
+    const WORK: u64 = 200_000;
+    let whole = Cell::of(bounds);
+    let (mut jets, mut values) = (Vec::new(), Vec::new());
+    let last = tape.steps().len() - 1;
+    // as large as may be inside: the cells that count for the sides are the outer ones, which are cut first
+    let most = (WORK / tape.work()).clamp(64, 20_000);
+    let mut waiting = std::collections::VecDeque::from([whole]);
+    let mut kept = Aabb::EMPTY;
+    let mut looked = 0;
+    let share = |cell: &Cell, k: usize| cell.side(k) / whole.side(k);
+    while let Some(cell) = waiting.pop_front() {
+        let inside = Aabb::new(cell.min, cell.max);
+        if kept.hull(&inside) == kept {
+            continue;
+        }
+        looked += 1;
+        let jet = tape.jets(&cell, &mut jets);
+        let [x, y, z] = cell.centre().map(F64);
+        let middle = tape.eval(v3(x, y, z), &mut values).0;
+        let along = (0..3).filter(|&k| tape.reaches(last, k));
+        let way = along
+            .map(|k| 0.25 * cell.side(k) * cell.side(k))
+            .sum::<f64>()
+            .sqrt();
+        let lowest = jet.value().lo.max(middle - way * jet.slope.l);
+        if lowest > 0.0 {
+            continue;
+        }
+        let axis = (0..3)
+            .filter(|&k| tape.reaches(last, k) && share(&cell, k) > 1.0 / 256.0)
+            .max_by(|&a, &b| share(&cell, a).total_cmp(&share(&cell, b)));
+        match axis {
+            Some(axis) if looked < most => waiting.extend(cell.split(axis)),
+            _ => kept = kept.hull(&inside),
+        }
+    }
+    kept
 }

@@ -27,6 +27,8 @@ pub enum Cause {
     Tangent,
     /// Jumps, as whole numbers do.
     FormulaStep,
+    /// Chooses between two values that differ where the condition flips.
+    Choice,
     /// Takes the angle of a point that may be the origin.
     Origin,
     /// Jumps by a full turn.
@@ -89,6 +91,11 @@ impl Obstacle {
                 (Cause::Division, step, y)
             }
             FormulaStep::Binary(Binary::Modulo, x, _) => (Cause::FormulaStep, step, x),
+            FormulaStep::Binary(Binary::Either, x, _) => match steps[x as usize] {
+                FormulaStep::Binary(Binary::When, condition, _) => (Cause::Choice, step, condition),
+                _ => (Cause::Choice, step, x),
+            },
+            FormulaStep::Binary(Binary::Less, x, _) => (Cause::FormulaStep, step, x),
             FormulaStep::Binary(Binary::Pow, x, _) => (Cause::Power, step, x),
             FormulaStep::Unary(Unary::Floor, x) => (Cause::FormulaStep, step, x),
             FormulaStep::Unary(Unary::Sqrt, x) => (Cause::Root, step, x),
@@ -159,6 +166,10 @@ impl fmt::Display for Obstacle {
             Cause::FormulaStep => {
                 write!(f, "`{e}` jumps (copies are better made with repeat(...))")?
             }
+            Cause::Choice => write!(
+                f,
+                "`{e}` jumps where `{x}` changes, unless its two values agree there, which could not be shown"
+            )?,
             Cause::Origin => write!(f, "`{e}` turns infinitely fast where both are 0")?,
             Cause::Turn => write!(
                 f,
@@ -168,7 +179,9 @@ impl fmt::Display for Obstacle {
         }
         let middle = std::array::from_fn(|k| 0.5 * (self.within.min[k] + self.within.max[k]));
         write!(f, " near {}", place(middle))?;
-        if self.range.iter().all(|x| x.is_finite()) && self.cause != Cause::Overflow {
+        if self.range.iter().all(|x| x.is_finite())
+            && !matches!(self.cause, Cause::Overflow | Cause::Choice)
+        {
             write!(
                 f,
                 ", where `{x}` is {} to {}",

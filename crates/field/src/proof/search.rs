@@ -60,6 +60,8 @@ struct Search<'t> {
     tape: &'t ProofTape,
     bounds: Cell,
     jets: Vec<Jet>,
+    /// See [`ProofTape::alive`].
+    alive: Option<Vec<bool>>,
     duals: Vec<Dual<F64>>,
     cells: u64,
     steepest: f64,
@@ -74,6 +76,7 @@ pub(crate) fn slope(tape: &ProofTape, bounds: &Aabb, budget: &Budget) -> Result<
         tape,
         bounds: whole,
         jets: Vec::new(),
+        alive: None,
         duals: Vec::new(),
         cells: 0,
         steepest: 0.0,
@@ -116,7 +119,8 @@ impl Search<'_> {
     fn look(&mut self, cell: Cell, bound: f64) -> Result<Waiting, ProofError> {
         self.cells += 1;
         let jet = self.tape.jets(&cell, &mut self.jets);
-        let defined = self.jets.iter().all(Jet::is_defined);
+        self.alive = self.tape.alive(&self.jets);
+        let defined = (0..self.jets.len()).all(|i| !self.counts(i) || self.jets[i].is_defined());
         let (urgency, axis) = if defined && jet.is_bounded() {
             // a cell that is too small to be cut may be cut anywhere
             let axis = self.longest(&cell, self.jets.len() - 1).unwrap_or(0);
@@ -152,9 +156,14 @@ impl Search<'_> {
         } else {
             Jet::is_bounded
         };
-        (self.jets.iter())
-            .position(|jet| !is_fine(jet))
+        (0..self.jets.len())
+            .find(|&i| self.counts(i) && !is_fine(&self.jets[i]))
             .unwrap_or(last)
+    }
+
+    /// Whether a step counts in the cell that was looked at last.
+    fn counts(&self, step: usize) -> bool {
+        self.alive.as_ref().is_none_or(|alive| alive[step])
     }
 
     /// The axis along which a cell is longest, among those that a step depends on; none where the cell is too small to be
@@ -168,6 +177,7 @@ impl Search<'_> {
 
     fn give_up(&mut self, cell: &Cell) -> ProofError {
         self.tape.jets(cell, &mut self.jets);
+        self.alive = self.tape.alive(&self.jets);
         let step = self.obstacle();
         let small = self.longest(cell, step).is_none();
         let obstacle = Obstacle::new(self.tape, &self.jets, step, cell, small);

@@ -1,9 +1,12 @@
 //! A formula as the proof runs it.
 
+use super::choice::{Choice, choices};
 use super::jet::Jet;
-use crate::formula::{Binary, FormulaStep, Steps, Unary};
+use crate::formula::{Binary, FormulaStep, Inner, Steps, Unary};
+use std::sync::Arc;
 use zeroset_catalogue::bounds::Aabb;
-use zeroset_number::{Interval, Real, Slope, Vec3, v3};
+use zeroset_eval::PointNumber;
+use zeroset_number::{Interval, Slope, Vec3, v3};
 
 /// A box: smallest and largest corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,10 +21,6 @@ impl Cell {
             min: bounds.min,
             max: bounds.max,
         }
-    }
-
-    pub(crate) fn longest(&self) -> f64 {
-        self.side(0).max(self.side(1)).max(self.side(2))
     }
 
     pub(crate) fn centre(&self) -> [f64; 3] {
@@ -99,6 +98,13 @@ enum Passing {
 #[derive(Debug)]
 pub(crate) struct ProofTape {
     steps: Vec<FormulaStep>,
+    fields: Arc<[Inner]>,
+    /// For every step, the choice that it is.
+    choices: Vec<Option<Choice>>,
+    /// Conditions and halves of choices.
+    quiet: Vec<bool>,
+    /// Whether there are choices.
+    chooses: bool,
     /// For every step, the coordinates that it depends on, as bits.
     reach: Vec<u8>,
     passing: Vec<Passing>,
@@ -153,7 +159,9 @@ fn leaves(steps: &[FormulaStep], f: Binary, step: u32) -> Vec<u32> {
 
 impl ProofTape {
     pub(crate) fn new(steps: &Steps) -> ProofTape {
+        let fields = steps.shared_fields();
         let steps = steps.list().to_vec();
+        let (choices, quiet) = choices(&steps);
         let mut reach: Vec<u8> = Vec::with_capacity(steps.len());
         let mut turns: Vec<Turns> = Vec::with_capacity(steps.len());
         let mut passing = Vec::with_capacity(steps.len());
@@ -166,6 +174,12 @@ impl ProofTape {
             let (bits, after, pass) = match *step {
                 FormulaStep::Coordinate(k) => (1 << k, Turns::None, Passing::On),
                 FormulaStep::Constant(_) => (0, Turns::None, Passing::On),
+                FormulaStep::Noise(_, q) | FormulaStep::Field(_, q) => {
+                    let bits = q.into_iter().fold(0, |bits, x| bits | reach[x as usize]);
+                    let turned = q.into_iter().any(|x| operand(x) != Turns::None);
+                    let pass = if turned { Passing::Jump } else { Passing::On };
+                    (bits, Turns::None, pass)
+                }
                 FormulaStep::Unary(f, x) => {
                     let before = operand(x);
                     let (after, pass) = match f {
@@ -206,7 +220,11 @@ impl ProofTape {
             .map(|step| is_exclusive(&steps, step))
             .collect();
         ProofTape {
+            chooses: choices.iter().any(Option::is_some),
             steps,
+            fields,
+            choices,
+            quiet,
             reach,
             passing,
             exclusive,
@@ -215,6 +233,49 @@ impl ProofTape {
 
     pub(crate) fn steps(&self) -> &[FormulaStep] {
         &self.steps
+    }
+
+    /// What an evaluation costs, in steps.
+    pub(crate) fn work(&self) -> u64 {
+        let of = |step: &FormulaStep| match *step {
+            FormulaStep::Field(i, _) => 4 * self.fields[i as usize].instructions() as u64,
+            // eight corners or 27 cells, each with its range and gradient
+            FormulaStep::Noise(..) => 500,
+            _ => 1,
+        };
+        self.steps.iter().map(of).sum::<u64>().max(1)
+    }
+
+    /// Which steps count over a cell, where the jets are those of the steps: not what a choice leaves out.
+    pub(crate) fn alive(&self, jets: &[Jet]) -> Option<Vec<bool>> {
+        if !self.chooses {
+            return None;
+        }
+        let mut alive = vec![false; self.steps.len()];
+        alive[self.steps.len() - 1] = true;
+        for i in (0..self.steps.len()).rev() {
+            if !alive[i] {
+                continue;
+            }
+            match self.choices[i] {
+                Some(choice) => {
+                    alive[choice.condition as usize] = true;
+                    let range = jets[choice.condition as usize].value();
+                    if range.hi > 0.5 {
+                        alive[choice.yes as usize] = true;
+                    }
+                    if range.lo <= 0.5 {
+                        alive[choice.no as usize] = true;
+                    }
+                }
+                None => {
+                    for x in self.steps[i].operands() {
+                        alive[x as usize] = true;
+                    }
+                }
+            }
+        }
+        Some(alive)
     }
 
     /// The coordinates that a step depends on.
@@ -238,10 +299,10 @@ impl ProofTape {
     }
 
     /// The value at a point; `values` is for those of the steps.
-    pub(crate) fn eval<R: Real>(&self, p: Vec3<R>, values: &mut Vec<R>) -> R {
+    pub(crate) fn eval<R: PointNumber>(&self, p: Vec3<R>, values: &mut Vec<R>) -> R {
         values.clear();
         for step in &self.steps {
-            values.push(step.eval(p, values));
+            values.push(step.eval(p, values, &self.fields));
         }
         values[values.len() - 1]
     }
@@ -252,6 +313,16 @@ impl ProofTape {
             FormulaStep::Coordinate(k) => return Jet::coordinate(point[usize::from(k)]),
             FormulaStep::Constant(c) => return Jet::constant(c),
             FormulaStep::Unary(f, x) => (Jet::unary(f, operand(x)), operand(x).turned),
+            FormulaStep::Noise(kind, q) => {
+                let q = q.map(operand);
+                (Jet::noise(kind, q), q.iter().any(|jet| jet.turned))
+            }
+            FormulaStep::Field(i, q) => {
+                let q = q.map(operand);
+                let jet = Jet::field(&self.fields[i as usize], q);
+                (jet, q.iter().any(|jet| jet.turned))
+            }
+            FormulaStep::Binary(..) if self.choices[step].is_some() => self.chosen(step, known),
             FormulaStep::Binary(_, x, y) if self.exclusive[step] => {
                 let (x, y) = (operand(x), operand(y));
                 (Jet::either(x, y), x.turned || y.turned)
@@ -262,6 +333,9 @@ impl ProofTape {
                 (Jet::binary(f, operand(x), operand(y), exponent), turned)
             }
         };
+        if self.quiet[step] {
+            return jet.quiet();
+        }
         match self.passing[step] {
             Passing::Hidden => jet.turned = false,
             Passing::Jump if turned => jet.break_off(),
@@ -272,5 +346,27 @@ impl ProofTape {
             jet.break_off();
         }
         jet
+    }
+
+    /// What is known of a choice, and whether it may be of an angle that jumps.
+    fn chosen(&self, step: usize, known: &[Jet]) -> (Jet, bool) {
+        let Some(choice) = self.choices[step] else {
+            return (known[step - 1], false);
+        };
+        let of = |i: u32| known[i as usize];
+        let (yes, no) = (of(choice.yes), of(choice.no));
+        let range = of(choice.condition).value();
+        let jet = match (range.hi > 0.5, range.lo <= 0.5) {
+            (true, false) => yes,
+            (false, _) => no,
+            (true, true) => {
+                let mut jet = Jet::one_of(&yes, &no);
+                if !choice.continuous {
+                    jet.break_off();
+                }
+                jet
+            }
+        };
+        (jet, jet.turned)
     }
 }

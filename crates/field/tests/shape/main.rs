@@ -33,7 +33,7 @@ fn made(shape: impl Into<Shape>) -> Field {
 /// A field as text, of which equal ones are equal.
 fn text(shape: impl Into<Shape>) -> String {
     fn write(field: &Field) -> String {
-        let children: Vec<String> = field.children().iter().map(write).collect();
+        let children: Vec<String> = field.children().into_iter().map(write).collect();
         let own = match field.node() {
             Node::Primitive { entry, params } => format!("{} {params:?}", entry.info.name),
             Node::Map { entry, params, .. } => format!("{} {params:?}", entry.info.name),

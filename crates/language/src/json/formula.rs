@@ -2,8 +2,13 @@
 
 use super::{JsonStep, Problem, Read, problem};
 use serde_json::{Map, Value, json};
+use zeroset_catalogue::Dimension;
+use zeroset_catalogue::LARGE;
 use zeroset_catalogue::bounds::Aabb;
-use zeroset_field::formula::{Binary, Budget, Formula, FormulaStep, Steps, Unary};
+use zeroset_field::field::Field;
+use zeroset_field::formula::{
+    Binary, Budget, Formula, FormulaStep, Inner, NoiseKind, Steps, Unary,
+};
 
 /// Names of functions of one step.
 const UNARY: &[(&str, Unary)] = &[
@@ -35,6 +40,16 @@ const BINARY: &[(&str, Binary)] = &[
     ("pow", Binary::Pow),
     ("atan2", Binary::Atan2),
     ("hypot", Binary::Hypot),
+    ("less", Binary::Less),
+    ("when", Binary::When),
+    ("either", Binary::Either),
+];
+
+/// Names of functions of a point, which is three steps.
+const NOISE: &[(&str, NoiseKind)] = &[
+    ("value_noise", NoiseKind::Value),
+    ("noise", NoiseKind::Gradient),
+    ("cellular_noise", NoiseKind::Cellular),
 ];
 
 const COORDINATES: [&str; 3] = ["x", "y", "z"];
@@ -53,20 +68,28 @@ pub(super) fn write(formula: &Formula) -> Map<String, Value> {
         FormulaStep::Coordinate(k) => json!(COORDINATES.get(usize::from(*k))),
         FormulaStep::Unary(f, a) => json!([name_of(UNARY, f), a]),
         FormulaStep::Binary(f, a, b) => json!([name_of(BINARY, f), a, b]),
+        FormulaStep::Noise(kind, [a, b, c]) => json!([name_of(NOISE, kind), a, b, c]),
+        // the number of the field among `of`, then the point
+        FormulaStep::Field(i, [a, b, c]) => json!(["of", i, a, b, c]),
     });
     let mut body = Map::new();
     body.insert("steps".into(), steps.collect());
-    body.insert(
-        "bounds".into(),
-        json!([formula.bounds().min, formula.bounds().max]),
-    );
+    let mut bounds = formula.bounds();
+    let plane = formula.dimension() == Dimension::Two;
+    if plane {
+        (bounds.min[2], bounds.max[2]) = (-1.0, 1.0);
+    }
+    body.insert("bounds".into(), json!([bounds.min, bounds.max]));
+    if plane {
+        body.insert("plane".into(), json!(true));
+    }
     body.insert("slope".into(), json!(formula.slope()));
     body.insert("proven".into(), json!(formula.is_proven()));
     body
 }
 
 /// A formula from its steps, its box, and its slope if that is stated rather than proven.
-pub(super) fn read(body: &Map<String, Value>) -> Read<Formula> {
+pub(super) fn read(body: &Map<String, Value>, fields: &[Field]) -> Read<Formula> {
     let steps = body.get("steps").and_then(Value::as_array);
     let steps = steps.ok_or_else(|| problem("a formula needs `steps`, a list"))?;
     let each = |(i, v)| step(v).map_err(|p| p.within(JsonStep::Index(i)).at("steps"));
@@ -75,7 +98,13 @@ pub(super) fn read(body: &Map<String, Value>) -> Read<Formula> {
         .enumerate()
         .map(each)
         .collect::<Read<Vec<FormulaStep>>>()?;
-    let steps = Steps::new(steps).map_err(|e| problem(e.to_string()).at("steps"))?;
+    let fields = fields
+        .iter()
+        .map(Inner::new)
+        .collect::<Result<Vec<Inner>, _>>();
+    let fields = fields.map_err(|e| problem(e.to_string()).at("of"))?;
+    let steps =
+        Steps::with_fields(steps, fields).map_err(|e| problem(e.to_string()).at("steps"))?;
     let corner = |v: Option<&Value>| {
         let items = v
             .and_then(Value::as_array)
@@ -90,13 +119,21 @@ pub(super) fn read(body: &Map<String, Value>) -> Read<Formula> {
     let corners = bounds.and_then(|b| Some((corner(b.first())?, corner(b.get(1))?)));
     let (min, max) =
         corners.ok_or_else(|| problem("a formula needs `bounds`, two corners of three numbers"))?;
-    let bounds = Aabb::new(min, max);
+    let mut bounds = Aabb::new(min, max);
+    let plane = body.get("plane").and_then(Value::as_bool).unwrap_or(false);
+    if plane {
+        (bounds.min[2], bounds.max[2]) = (-LARGE, LARGE);
+    }
     let formula = match (
         body.get("proven").and_then(Value::as_bool),
         body.get("slope").and_then(Value::as_f64),
     ) {
         (Some(false), Some(slope)) => Formula::stated(steps, bounds, slope),
         _ => Formula::prove(steps, bounds, &Budget::default()),
+    };
+    let formula = match plane {
+        true => formula.and_then(Formula::flattened),
+        false => formula,
     };
     formula.map_err(|e| problem(e.to_string()))
 }
@@ -126,6 +163,19 @@ fn step(value: &Value) -> Read<FormulaStep> {
         [ref a, ref b] => {
             let found = BINARY.iter().find(|f| f.0 == name);
             found.and_then(|f| Some(FormulaStep::Binary(f.1, operand(a)?, operand(b)?)))
+        }
+        [ref a, ref b, ref c] => {
+            let found = NOISE.iter().find(|f| f.0 == name);
+            found.and_then(|f| {
+                Some(FormulaStep::Noise(
+                    f.1,
+                    [operand(a)?, operand(b)?, operand(c)?],
+                ))
+            })
+        }
+        [ref i, ref a, ref b, ref c] if name == "of" => {
+            let point = || Some([operand(a)?, operand(b)?, operand(c)?]);
+            operand(i).and_then(|i| Some(FormulaStep::Field(i, point()?)))
         }
         _ => None,
     };

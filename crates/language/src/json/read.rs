@@ -275,6 +275,15 @@ impl Reader {
                 .collect::<Read<Vec<Object>>>()
         })?;
         draft.objects = objects.unwrap_or_default();
+        let written = map.get("objects").and_then(Value::as_array);
+        draft.plain = (written
+            .into_iter()
+            .flatten()
+            .zip(&draft.objects)
+            .enumerate())
+        .filter(|(_, (v, o))| v.get("material").is_none() && o.field.facts().materials == 0)
+        .map(|(i, _)| i)
+        .collect();
         if let Some(files) = self.files.take() {
             draft.files = files;
         }
@@ -461,18 +470,7 @@ impl Reader {
         }
         if let Some(entry) = all.join(name) {
             let params = parameters(&entry.info, body, true)?;
-            let shapes = body.get("of").and_then(Value::as_array);
-            let shapes =
-                shapes.ok_or_else(|| problem(format!("{name} needs `of`, a list of fields")))?;
-            let each = |(i, v)| {
-                self.field(v)
-                    .map_err(|p| p.within(JsonStep::Index(i)).at("of"))
-            };
-            let shapes = shapes
-                .iter()
-                .enumerate()
-                .map(each)
-                .collect::<Read<Vec<Field>>>()?;
+            let shapes = self.all_of(body.get("of"), name)?;
             return made(Field::join(entry, params, shapes));
         }
         match name {
@@ -526,10 +524,16 @@ impl Reader {
                 made(self.of(body)?.paint(paint))
             }
             "formula" => {
-                let map = members(body, "formula", &["steps", "bounds", "slope", "proven"])?;
+                let known = ["steps", "bounds", "slope", "proven", "plane", "of"];
+                let map = members(body, "formula", &known)?;
+                let fields = match map.get("of") {
+                    Some(of) => self.all_of(Some(of), name)?,
+                    None => Vec::new(),
+                };
                 // a proof takes up to a tenth of a second
                 self.check_clock()?;
-                Ok(Field::formula(Arc::new(super::formula::read(map)?)))
+                let formula = super::formula::read(map, &fields)?;
+                made(Field::formula(Arc::new(formula)))
             }
             "mesh" => {
                 let map = members(body, "mesh", &["file", "voxels", "sign"])?;
@@ -596,6 +600,18 @@ impl Reader {
         let (samples, taken) = made.map_err(|m| problem(m).at("file"))?;
         self.budget.pause(taken);
         Ok(Field::sampled(samples))
+    }
+
+    /// The fields under `of`.
+    fn all_of(&mut self, of: Option<&Value>, name: &str) -> Read<Vec<Field>> {
+        let shapes = of.and_then(Value::as_array);
+        let shapes =
+            shapes.ok_or_else(|| problem(format!("{name} needs `of`, a list of fields")))?;
+        let each = |(i, v)| {
+            self.field(v)
+                .map_err(|p| p.within(JsonStep::Index(i)).at("of"))
+        };
+        shapes.iter().enumerate().map(each).collect()
     }
 
     /// The field under `of`.

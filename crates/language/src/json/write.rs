@@ -234,7 +234,14 @@ impl Writer {
                 body.insert("of".into(), of(shape));
                 ("paint", body)
             }
-            Node::Formula(formula) => ("formula", super::formula::write(formula)),
+            Node::Formula(formula) => {
+                let mut body = super::formula::write(formula);
+                if !formula.fields().is_empty() {
+                    let fields = formula.fields().iter().map(|f| of(f.field()));
+                    body.insert("of".into(), fields.collect());
+                }
+                ("formula", body)
+            }
             Node::Sampled(samples) => match samples.source() {
                 Some(source) => of_file(source),
                 // refused before: see `expand`

@@ -62,8 +62,12 @@ pub(crate) const ALL: &[Native] = &[
     ),
     native!(
         "dict",
-        "A dict of pairs.",
-        [slot("pairs", "[]", "A list of (key, value), or a dict.")],
+        "A dict of pairs, and of names: dict(a = 1).",
+        [slot(
+            "pairs",
+            "[]",
+            "A list of (key, value), or a dict; names with values may follow."
+        )],
         dict
     ),
     native!(

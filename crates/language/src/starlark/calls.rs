@@ -2,12 +2,14 @@
 
 use super::depth::CALL;
 use super::fields;
+use super::formulas;
 use super::machine::{Body, Machine, ParamKind};
 use super::materials;
 use super::methods;
 use super::mistake::{Run, mistake};
 use super::native::{Argument, Call, Native};
 use super::run::Flow;
+use super::synonyms;
 use super::value::{DictKey, Method, Thing, Value};
 use crate::report::{Place, listing, suggestion};
 use starlark_syntax::codemap::Span;
@@ -118,7 +120,16 @@ impl<'a> Machine<'a> {
                 None => self.call_native(native, Value::None, arguments, place),
             },
             Value::Formula(function) => self.call_formula(function, &arguments, place),
+            Value::Thing(i) if matches!(self.store.thing(i), Thing::Field(_)) => {
+                match self.store.thing(i).clone() {
+                    Thing::Field(field) => self.ask_field(&field, &arguments, place),
+                    _ => Ok(Value::None),
+                }
+            }
             Value::Primitive(entry) => {
+                if let Some(function) = self.formula_function(entry.info.name, &arguments) {
+                    return self.call_formula(function, &arguments, place);
+                }
                 let params = entry.info.params.iter().map(|p| p.name).collect();
                 let mut call = Call::bind(
                     self,
@@ -192,6 +203,56 @@ impl<'a> Machine<'a> {
         Ok(arguments)
     }
 
+    /// `dict(pairs, a = 1)` as `dict(pairs + [("a", 1)])`.
+    fn with_named_pairs(&mut self, arguments: Vec<Argument<'a>>) -> Run<Vec<Argument<'a>>> {
+        let Some(place) = arguments.iter().find(|a| a.name.is_some()).map(|a| a.place) else {
+            return Ok(arguments);
+        };
+        let dict = self.dict()?;
+        let (mut rest, mut named) = (Vec::new(), Vec::new());
+        for argument in arguments {
+            match argument.name {
+                Some(name) => named.push((name, argument.value)),
+                None => rest.push(argument),
+            }
+        }
+        if let [one] = &rest[..] {
+            let pairs = match one.value {
+                Value::Dict(other) => self.store.dict(other).pairs.values().copied().collect(),
+                other => {
+                    let mut pairs = Vec::new();
+                    for pair in self.collect(other).map_err(|m| m.at(one.place))? {
+                        match self.store.items(pair) {
+                            Some(&[key, value]) => pairs.push((key, value)),
+                            _ => {
+                                let m = mistake("dict() needs pairs such as (\"key\", 1)");
+                                return Err(m.at(one.place));
+                            }
+                        }
+                    }
+                    pairs
+                }
+            };
+            pairs
+                .into_iter()
+                .try_for_each(|(k, v)| self.insert(dict, k, v))?;
+            rest.clear();
+        }
+        for (name, value) in named {
+            let key = self.text(name.as_ref())?;
+            self.insert(dict, key, value)?;
+        }
+        rest.insert(
+            0,
+            Argument {
+                name: None,
+                value: Value::Dict(dict),
+                place,
+            },
+        );
+        Ok(rest)
+    }
+
     fn call_native(
         &mut self,
         native: &'static Native,
@@ -199,7 +260,11 @@ impl<'a> Machine<'a> {
         arguments: Vec<Argument<'a>>,
         place: Place,
     ) -> Run<Value> {
-        let params = native.params.iter().map(|p| p.name).collect();
+        let (params, arguments) = match native.name {
+            // dict(a = 1): the names are keys
+            "dict" => (vec!["pairs"], self.with_named_pairs(arguments)?),
+            _ => (native.params.iter().map(|p| p.name).collect(), arguments),
+        };
         let mut call = Call::bind(
             self,
             native.name,
@@ -222,6 +287,11 @@ impl<'a> Machine<'a> {
     ) -> Run<Value> {
         let catalogue = |info: &'static zeroset_catalogue::Info| info.params.iter().map(|p| p.name);
         match method {
+            Method::Modify(entry)
+                if entry.info.name == formulas::DISPLACE.name && gives_function(&arguments) =>
+            {
+                self.call_native(&formulas::DISPLACE, receiver, arguments, place)
+            }
             Method::Native(native) => self.call_native(native, receiver, arguments, place),
             Method::Map(entry) => {
                 let params = catalogue(&entry.info).collect();
@@ -256,6 +326,7 @@ impl<'a> Machine<'a> {
                 return fields::method(name).ok_or_else(|| {
                     let functions = fields::function_of_this_name(name);
                     let help = functions
+                        .or_else(|| synonyms::of_name(name))
                         .or_else(|| suggestion(name, fields::method_names().iter().copied()));
                     mistake(format!("a field has no method `{name}`")).maybe_help(help)
                 });
@@ -304,14 +375,19 @@ impl<'a> Machine<'a> {
         let f = &self.functions[number as usize];
         let (names, body, module, parent) = (f.locals.clone(), f.body, f.module, f.frame);
         let outer = std::mem::replace(&mut self.module, module);
+        let (from, branches) = (self.pending.len(), std::mem::take(&mut self.branches));
         self.calls += 1;
         let result = self.in_frame(names, values, parent, |m| match body {
             Body::Expression(e) => m.eval(e),
-            Body::Block(block) => match m.statement(block)? {
-                Flow::Return(value) => Ok(value),
-                _ => Ok(Value::None),
-            },
+            Body::Block(block) => {
+                let last = match m.statement(block)? {
+                    Flow::Return(value) => value,
+                    _ => Value::None,
+                };
+                m.returned(from, last)
+            }
         });
+        self.branches = branches;
         self.calls -= 1;
         self.module = outer;
         result.map_err(|m| m.called_from(place))
@@ -407,6 +483,15 @@ impl<'a> Machine<'a> {
         }
         Ok(values)
     }
+}
+
+/// Whether the first thing given is a function.
+fn gives_function(arguments: &[Argument<'_>]) -> bool {
+    let first = arguments.first().map(|a| a.value);
+    matches!(
+        first,
+        Some(Value::Function(_) | Value::Native(_) | Value::Formula(_))
+    )
 }
 
 impl super::machine::Function<'_> {

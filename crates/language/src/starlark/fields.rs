@@ -3,8 +3,9 @@
 
 use super::machine::Machine;
 use super::mistake::{Mistake, Run, mistake};
-use super::native::{Call, Given, spoken};
+use super::native::{Call, Given, Native, spoken};
 use super::place;
+use super::shaping;
 use super::value::{Method, Thing, Value};
 use starlark_syntax::syntax::ast::BinOp;
 use std::sync::LazyLock;
@@ -17,9 +18,14 @@ use zeroset_field::field::{Field, FieldError, Node};
 /// Methods that mean a join, beside the join's own name.
 const SYNONYMS: &[(&str, &str)] = &[("blend", "smooth_union")];
 
+/// The methods that no entry of the catalogue is.
+pub(crate) fn own_methods() -> impl Iterator<Item = &'static Native> {
+    place::METHODS.iter().chain(shaping::METHODS)
+}
+
 /// The method of a field with this name.
 pub(crate) fn method(name: &str) -> Option<(&'static str, Method)> {
-    if let Some(native) = place::METHODS.iter().find(|n| n.name == name) {
+    if let Some(native) = own_methods().find(|n| n.name == name) {
         return Some((native.name, Method::Native(native)));
     }
     let all = catalogue();
@@ -41,11 +47,30 @@ pub(crate) fn method(name: &str) -> Option<(&'static str, Method)> {
     })
 }
 
+/// Methods that are a join under another name, for the reference.
+pub(crate) fn synonymous_methods() -> impl Iterator<Item = super::Word> {
+    SYNONYMS.iter().filter_map(|(name, join)| {
+        let entry = catalogue().join(join)?;
+        let radius = entry.info.params.first()?;
+        Some(super::Word {
+            name,
+            kind: "method",
+            doc: "Another name of smooth_union as a method: a.blend(b, radius = 0.2).",
+            group: entry.info.group,
+            params: vec![
+                ("other", "", "The other field."),
+                (radius.name, "0.25", radius.doc),
+            ],
+            more: false,
+        })
+    })
+}
+
 /// The names of all methods of a field.
 pub(crate) fn method_names() -> &'static [&'static str] {
     static NAMES: LazyLock<Vec<&str>> = LazyLock::new(|| {
         let all = catalogue();
-        (place::METHODS.iter().map(|n| n.name))
+        (own_methods().map(|n| n.name))
             .chain(all.maps.iter().map(|e| e.info.name))
             .chain(all.modifiers.iter().map(|e| e.info.name))
             .chain(all.joins.iter().map(|e| e.info.name))

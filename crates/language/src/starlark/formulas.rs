@@ -1,8 +1,7 @@
-//! Free-form fields: `field(lambda p: ...)`. The function runs once, on a point whose coordinates write down what is done
-//! with them.
+//! Formulas: `field(lambda p: ...)`, `shape.map(lambda p: ...)`, `shape.displace(lambda p: ...)`. The function runs once, on a
+//! point whose coordinates write down what is done with them.
 
 use super::machine::Machine;
-use super::math::Angle;
 use super::mistake::{Mistake, Run, mistake};
 use super::native::{Argument, Call, Given, Native, Slot, slot};
 use super::value::{Thing, Value};
@@ -10,48 +9,128 @@ use crate::report::Place;
 use starlark_syntax::syntax::ast::BinOp;
 use std::sync::Arc;
 use zeroset_catalogue::bounds::Aabb;
-use zeroset_catalogue::{LARGE, SMALL};
+use zeroset_catalogue::{Dimension, LARGE, SMALL};
 use zeroset_field::field::Field;
 use zeroset_field::formula::{
-    Budget, BuildError, Builder, Expression, Formula, Function, ProofError, functions,
+    Budget, BuildError, Builder, EASE, Expression, Formula, Function, ProofError, ROTATE, Steps,
+    WHERE, functions,
 };
 
-const SLOTS: &[Slot] = &[
-    slot(
-        "f",
-        "",
-        "A function of a point p, such as lambda p: length(p) - 1. Its value is negative inside.",
-    ),
-    slot(
-        "size",
-        "4",
-        "Sides of the box around the origin that the field lives in: a number or (x, y, z).",
-    ),
-    slot(
-        "bounds",
-        "None",
-        "Corners ((x, y, z), (x, y, z)) of the box, in place of a size.",
-    ),
-    slot(
-        "slope",
-        "proven",
-        "How fast the value changes at most, where that cannot be proven.",
-    ),
-];
+const SIZE: Slot = slot(
+    "size",
+    "4",
+    "Sides of the box around the origin that the field lives in: a number or (x, y, z).",
+);
+const FLAT_SIZE: Slot = slot(
+    "size",
+    "4",
+    "Sides of the rectangle around the origin that the shape lives in: a number or (x, y).",
+);
+const BOUNDS: Slot = slot(
+    "bounds",
+    "None",
+    "Corners ((x, y, z), (x, y, z)) of the box, in place of a size.",
+);
+const FLAT_BOUNDS: Slot = slot(
+    "bounds",
+    "None",
+    "Corners ((x, y), (x, y)) of the rectangle, in place of a size.",
+);
+const FOUND: Slot = slot(
+    "bounds",
+    "found",
+    "Corners ((x, y, z), (x, y, z)) of the box that holds the result, where it is not found.",
+);
+const SLOPE: Slot = slot(
+    "slope",
+    "proven",
+    "How fast the value changes at most, where that cannot be proven.",
+);
 
 /// The functions.
-pub(crate) const ALL: &[Native] = &[Native {
-    name: "field",
-    doc: "A field from a formula. How fast it changes is proven over its box.",
-    group: "Formulas",
-    params: SLOTS,
-    rest: false,
-    run: field,
-}];
+pub(crate) const ALL: &[Native] = &[
+    Native {
+        name: "field",
+        doc: "A field from a formula. How fast it changes is proven over its box.",
+        group: GROUP,
+        params: &[
+            slot(
+                "f",
+                "",
+                "A function of a point p, such as lambda p: length(p) - 1. Its value is negative inside.",
+            ),
+            SIZE,
+            BOUNDS,
+            SLOPE,
+        ],
+        rest: false,
+        run: |c| field(c, false),
+    },
+    Native {
+        name: "field2d",
+        doc: "A plane shape from a formula, for extrude, revolve and the like.",
+        group: GROUP,
+        params: &[
+            slot(
+                "f",
+                "",
+                "A function of a point p = (x, y), such as lambda p: length(p) - 1. Its value is negative inside.",
+            ),
+            FLAT_SIZE,
+            FLAT_BOUNDS,
+            SLOPE,
+        ],
+        rest: false,
+        run: |c| field(c, true),
+    },
+];
 
-/// Functions of formulas that are no functions of numbers by themselves.
+/// `shape.map(lambda p: ...)`.
+pub(crate) const MAP: Native = Native {
+    name: "map",
+    doc: "A deformation of one's own: what is seen at p is what the shape has at f(p). How much it stretches is proven.",
+    group: GROUP,
+    params: &[
+        slot(
+            "f",
+            "",
+            "A function of a point that gives a point, such as lambda p: rotate(p, \"y\", p.y).",
+        ),
+        FOUND,
+        SLOPE,
+    ],
+    rest: false,
+    run: map,
+};
+
+/// `shape.displace(lambda p: ...)`.
+pub(crate) const DISPLACE: Native = Native {
+    name: "displace",
+    doc: "Moves the surface outwards by a formula.",
+    group: GROUP,
+    params: &[
+        slot(
+            "amplitude",
+            "",
+            "A function of a point that gives a length, such as lambda p: 0.1 * sin(20 * p.x).",
+        ),
+        FOUND,
+        SLOPE,
+    ],
+    rest: false,
+    run: displace,
+};
+
+const GROUP: &str = "Formulas";
+
+/// All functions of formulas.
+pub(crate) fn all_functions() -> impl Iterator<Item = &'static Function> {
+    functions().iter().chain([&ROTATE, &WHERE, &EASE])
+}
+
+/// Functions of formulas that are no functions of numbers, shapes or materials by themselves.
 pub(crate) fn more_functions() -> impl Iterator<Item = &'static Function> {
-    functions().iter().filter(|f| !super::is_native(f.name))
+    all_functions().filter(|f| !super::is_native(f.name))
 }
 
 /// Steps of the script that a proof counts as, beside those of the formula: a proof takes up to a tenth of a second.
@@ -60,85 +139,116 @@ const PROOF: u64 = 20_000;
 /// Bytes that a value of a formula counts as.
 const BYTES: usize = 40;
 
+/// Steps of the script that a call of a field counts as at most.
+const MOST_CALLED: u64 = 100_000;
+
 /// That the truth of a value is asked for which depends on the point.
 pub(crate) fn undecided() -> Box<Mistake> {
     mistake(
         "a value of a formula is neither true nor false: the formula is written down once, for all points",
     )
     .help(
-        "where values are negative inside, min(a, b) is a or b, max(a, b) is a and b, -a is not a; clamp(x, lo, hi), \
-         step(edge, x) and mix(a, b, t) choose between values",
+        "compare it, as in `a if p.x > 0 else b`; where values are negative inside, min(a, b) is a or b, max(a, b) is a and b, \
+         -a is not a",
     )
 }
 
-/// That values are compared which depend on the point.
+/// That a condition on the point is asked for its truth where one answer is needed for all points.
+pub(crate) fn conditional() -> Box<Mistake> {
+    mistake("this condition depends on the point, and here one answer is needed for all points").help(
+        "`a if condition else b`, `if` with returns or values, `and`, `or` and `not` take it; loops and lists must not depend on it",
+    )
+}
+
+/// That values are compared in a way that needs one answer for all points.
 pub(crate) fn incomparable() -> Box<Mistake> {
-    mistake("a formula cannot compare: it is written down once, for all points").help(
-        "write min(a, b), max(a, b), clamp(x, lo, hi), step(edge, x) or smoothstep(lo, hi, x)",
+    mistake("values of a formula cannot be compared here: which is larger depends on the point").help(
+        "write `a if p.x > 0 else b`, min(a, b), max(a, b), clamp(x, lo, hi), step(edge, x) or smoothstep(lo, hi, x)",
     )
 }
 
-fn field(c: &mut Call<'_, '_>) -> Run<Value> {
-    let given = c.need("f")?;
-    let bounds = bounds(c)?;
+/// A formula over its box, proven or with a stated slope.
+pub(crate) fn made(
+    c: &mut Call<'_, '_>,
+    f: Given,
+    steps: Steps,
+    bounds: Aabb,
+    flat: bool,
+) -> Run<Value> {
     let slope = c
         .get("slope")
         .map(|g| c.ranged("slope", g, 1e-6, 1e6))
         .transpose()?;
-    let builder = Builder::new();
-    let point = c.machine.formula_value(builder.point())?;
-    let argument = Argument {
-        name: None,
-        value: point,
-        place: given.place,
-    };
-    let result = c.machine.call(given.value, vec![argument], c.place)?;
-    let value = match c.machine.operand(&builder, result)? {
-        Some(value) => value,
-        None => {
-            let kind = c.machine.store.kind(result);
-            return Err(mistake(format!(
-                "the function must give a number made of p, not {kind}"
-            ))
-            .at(given.place));
-        }
-    };
-    let steps = builder
-        .finish(&value)
-        .map_err(|e| told(&e).at(given.place))?;
     c.machine.charge(PROOF + steps.list().len() as u64)?;
     let formula = match slope {
         Some(slope) => Formula::stated(steps, bounds, slope),
         None => Formula::prove(steps, bounds, &Budget::default()),
     };
+    let formula = match flat {
+        true => formula.and_then(Formula::flattened),
+        false => formula,
+    };
+    let name = c.name;
     let formula = formula.map_err(|e| {
-        let m = mistake(e.to_string()).at(given.place);
+        let m = mistake(e.to_string()).at(f.place);
         match e {
             ProofError::Negative(_) => m,
-            _ => m.help("state how fast it changes at most: field(..., slope = 2)"),
+            _ => m.help(format!(
+                "state how fast it changes at most: {name}(..., slope = 2)"
+            )),
         }
     })?;
     c.machine.grow(size_of_val(formula.steps()))?;
-    super::fields::value(c.machine, Ok(Field::formula(Arc::new(formula))))
+    super::fields::value(c.machine, Field::formula(Arc::new(formula)))
+}
+
+/// The steps of a function of a point: `end` makes a number of what it gives.
+fn written(
+    c: &mut Call<'_, '_>,
+    f: Given,
+    flat: bool,
+    gives: &str,
+    end: impl FnOnce(&Builder, Expression) -> Expression,
+) -> Run<Steps> {
+    let builder = Builder::new();
+    let point = builder.point();
+    let point = match flat.then(|| point.swizzle("xy")).flatten() {
+        Some(plane) => plane,
+        None => point,
+    };
+    let point = c.machine.formula_value(point)?;
+    let argument = Argument {
+        name: None,
+        value: point,
+        place: f.place,
+    };
+    let result = c.machine.call(f.value, vec![argument], c.place)?;
+    let Some(value) = c.machine.operand(&builder, result)? else {
+        let kind = c.machine.store.kind(result);
+        let m = mistake(format!(
+            "the function must give {gives} made of p, not {kind}"
+        ));
+        return Err(match result {
+            Value::None => m.help("a function gives what follows `return`"),
+            _ => m,
+        }
+        .at(f.place));
+    };
+    let value = end(&builder, value);
+    builder.finish(&value).map_err(|e| told(&e).at(f.place))
+}
+
+fn field(c: &mut Call<'_, '_>, flat: bool) -> Run<Value> {
+    let f = c.need("f")?;
+    let bounds = if flat { flat_bounds(c)? } else { bounds(c)? };
+    let steps = written(c, f, flat, "a number", |_, value| value)?;
+    made(c, f, steps, bounds, flat)
 }
 
 /// The box of a formula.
 fn bounds(c: &Call<'_, '_>) -> Run<Aabb> {
     if let Some(given) = c.get("bounds") {
-        let corners = c
-            .machine
-            .store
-            .items(given.value)
-            .filter(|items| items.len() == 2);
-        let &[low, high] = corners.unwrap_or_default() else {
-            return Err(c.unfit(
-                "bounds",
-                "two corners such as ((-1, -1, -1), (1, 1, 1))",
-                given,
-            ));
-        };
-        let corner = |value| c.numbers::<3>("bounds", Given { value, ..given });
-        return Ok(Aabb::new(corner(low)?, corner(high)?));
+        return corners(c, given);
     }
     let half = match c.get("size") {
         None => [2.0; 3],
@@ -150,17 +260,138 @@ fn bounds(c: &Call<'_, '_>) -> Run<Aabb> {
     Ok(Aabb::centred(half))
 }
 
-fn told(error: &BuildError) -> Box<Mistake> {
+fn corners(c: &Call<'_, '_>, given: Given) -> Run<Aabb> {
+    let [low, high] = pair(c, given, "two corners such as ((-1, -1, -1), (1, 1, 1))")?;
+    let corner = |value| c.numbers::<3>("bounds", Given { value, ..given });
+    Ok(Aabb::new(corner(low)?, corner(high)?))
+}
+
+/// The box of a formula in the plane.
+fn flat_bounds(c: &Call<'_, '_>) -> Run<Aabb> {
+    let rectangle = |low: [f64; 2], high: [f64; 2]| {
+        Aabb::new([low[0], low[1], -LARGE], [high[0], high[1], LARGE])
+    };
+    if let Some(given) = c.get("bounds") {
+        let [low, high] = pair(c, given, "two corners such as ((-1, -1), (1, 1))")?;
+        let corner = |value| c.numbers::<2>("bounds", Given { value, ..given });
+        return Ok(rectangle(corner(low)?, corner(high)?));
+    }
+    let half = match c.get("size") {
+        None => [2.0; 2],
+        Some(given) if matches!(given.value, Value::Int(_) | Value::Float(_)) => {
+            [0.5 * c.ranged("size", given, SMALL, LARGE)?; 2]
+        }
+        Some(given) => c.numbers::<2>("size", given)?.map(|x| 0.5 * x),
+    };
+    Ok(rectangle(half.map(|x| -x), half))
+}
+
+fn pair(c: &Call<'_, '_>, given: Given, wanted: &str) -> Run<[Value; 2]> {
+    match c.machine.store.items(given.value) {
+        Some(&[low, high]) => Ok([low, high]),
+        _ => Err(c.unfit("bounds", wanted, given)),
+    }
+}
+
+/// A box that holds what a formula makes of a shape: the one given, or what is found in a box around the shape's.
+pub(crate) fn found(c: &mut Call<'_, '_>, of: &Aabb, flat: bool, steps: &Steps) -> Run<Aabb> {
+    if let Some(given) = c.get("bounds") {
+        return if flat {
+            flat_bounds(c)
+        } else {
+            corners(c, given)
+        };
+    }
+    let axes = if flat { 0..2 } else { 0..3 };
+    let ends = axes
+        .clone()
+        .all(|k| of.min[k].is_finite() && of.max[k].is_finite());
+    if !ends || of.is_empty() {
+        let m = mistake(format!(
+            "{}() of a shape without ends needs `bounds`",
+            c.name
+        ));
+        return Err(m.help(
+            "write bounds = ((-5, -5, -5), (5, 5, 5)), or intersect the shape with a box first",
+        ));
+    }
+    let reach = axes.clone().map(|k| of.half()[k]).fold(0.0, f64::max);
+    let mut around = of.grow((3.0 * reach).max(1e-6));
+    if flat {
+        (around.min[2], around.max[2]) = (-LARGE, LARGE);
+    }
+    c.machine.charge(PROOF)?;
+    let mut found = steps.reach(&around);
+    let hair = 1e-4 * reach;
+    for k in axes {
+        if found.min[k] <= around.min[k] || found.max[k] >= around.max[k] {
+            let m = mistake(format!(
+                "how far the result of {}() reaches could not be found: at least {} from the shape's box",
+                c.name,
+                super::native::spoken(3.0 * reach)
+            ));
+            return Err(m.help("state a box that holds it: bounds = ((-5, -5, -5), (5, 5, 5))"));
+        }
+        if found.is_empty() {
+            continue;
+        }
+        found.min[k] -= hair;
+        found.max[k] += hair;
+    }
+    // nothing is left of it: a box of any size will do
+    Ok(if found.is_empty() {
+        of.grow(hair.max(1e-6))
+    } else {
+        found
+    })
+}
+
+fn map(c: &mut Call<'_, '_>) -> Run<Value> {
+    let (shape, f) = (c.shape()?, c.need("f")?);
+    let flat = shape.facts().dimension == Dimension::Two;
+    let gives = if flat {
+        "a point (x, y)"
+    } else {
+        "a point (x, y, z)"
+    };
+    let steps = written(c, f, flat, gives, |builder, q| builder.field(&shape, &q))?;
+    let bounds = found(c, &shape.facts().bounds, flat, &steps)?;
+    made(c, f, steps, bounds, flat)
+}
+
+fn displace(c: &mut Call<'_, '_>) -> Run<Value> {
+    let (shape, f) = (c.shape()?, c.need("amplitude")?);
+    let flat = shape.facts().dimension == Dimension::Two;
+    let at = |builder: &Builder| match builder.point() {
+        p if flat => p.swizzle("xy").unwrap_or(p),
+        p => p,
+    };
+    let steps = written(c, f, flat, "a number", |builder, by| {
+        builder.field(&shape, &at(builder)) - by
+    })?;
+    let bounds = found(c, &shape.facts().bounds, flat, &steps)?;
+    made(c, f, steps, bounds, flat)
+}
+
+pub(crate) fn told(error: &BuildError) -> Box<Mistake> {
     mistake(error.to_string())
 }
 
 impl<'a> Machine<'a> {
     /// A value of a formula.
-    fn formula_value(&mut self, expression: Expression) -> Run<Value> {
+    pub(crate) fn formula_value(&mut self, expression: Expression) -> Run<Value> {
         self.charge(2)?;
         self.grow(BYTES)?;
         expression.builder().check().map_err(|e| told(&e))?;
         Ok(self.charged_thing(Thing::Expression(expression)))
+    }
+
+    /// A condition on the point.
+    pub(crate) fn formula_condition(&mut self, condition: Expression) -> Run<Value> {
+        self.charge(2)?;
+        self.grow(BYTES)?;
+        condition.builder().check().map_err(|e| told(&e))?;
+        Ok(self.charged_thing(Thing::Condition(condition)))
     }
 
     fn as_expression(&self, value: Value) -> Option<&Expression> {
@@ -173,6 +404,276 @@ impl<'a> Machine<'a> {
         }
     }
 
+    /// The parts of a vector of a formula, as a tuple.
+    pub(crate) fn parts_of_vector(&mut self, value: Value) -> Run<Option<Value>> {
+        let Some(vector) = self.as_expression(value).filter(|e| e.parts() > 1).cloned() else {
+            return Ok(None);
+        };
+        self.grow_items(vector.parts())?;
+        let parts = (0..vector.parts()).map(|k| self.formula_value(vector.part(k)));
+        let parts = parts.collect::<Run<Vec<Value>>>()?;
+        self.tuple(parts).map(Some)
+    }
+
+    /// How many parts a vector of a formula has; none for anything else.
+    pub(crate) fn vector_length(&self, value: Value) -> Option<u64> {
+        let parts = self.as_expression(value)?.parts();
+        (parts > 1).then_some(parts as u64)
+    }
+
+    /// A condition on the point, if a value is one.
+    pub(crate) fn as_condition(&self, value: Value) -> Option<Expression> {
+        match value {
+            Value::Thing(i) => match self.store.thing(i) {
+                Thing::Condition(condition) => Some(condition.clone()),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// Where the condition holds `yes`, else `no`.
+    pub(crate) fn chosen(&mut self, condition: &Expression, yes: Value, no: Value) -> Run<Value> {
+        self.charge(4)?;
+        let builder = condition.builder().clone();
+        if same_value(yes, no) {
+            return Ok(yes);
+        }
+        let truth = |m: &Self, value| match value {
+            Value::Bool(b) => Some(builder.constant(f64::from(u8::from(b)))),
+            other => m.as_condition(other),
+        };
+        if let (Some(a), Some(b)) = (truth(self, yes), truth(self, no)) {
+            let holds = condition.min(a).max(condition.negated().min(b));
+            return self.formula_condition(holds);
+        }
+        if let (Some(a), Some(b)) = (self.operand(&builder, yes)?, self.operand(&builder, no)?) {
+            return self.formula_value(condition.choose(a, b));
+        }
+        // lists of values of the same length, one by one
+        let (a, b) = (self.store.items(yes), self.store.items(no));
+        if let (Some(a), Some(b)) = (a, b)
+            && a.len() == b.len()
+        {
+            let pairs: Vec<(Value, Value)> = a.iter().copied().zip(b.iter().copied()).collect();
+            self.grow_items(pairs.len())?;
+            let chosen = pairs
+                .into_iter()
+                .map(|(a, b)| self.deeper(super::depth::CALL, |m| m.chosen(condition, a, b)));
+            let chosen = chosen.collect::<Run<Vec<Value>>>()?;
+            return match yes {
+                Value::List(_) => self.list(chosen),
+                _ => self.tuple(chosen),
+            };
+        }
+        let (a, b) = (self.store.kind(yes), self.store.kind(no));
+        Err(mistake(format!(
+            "a condition on the point chooses between numbers or vectors, not between {a} and {b}"
+        )))
+    }
+
+    /// `a and b`, `a or b`, where a is a condition on the point.
+    pub(crate) fn combined(&mut self, left: &Expression, right: Value, both: bool) -> Run<Value> {
+        let right = match right {
+            Value::Bool(b) => left.builder().constant(f64::from(u8::from(b))),
+            other => match self.as_condition(other) {
+                Some(right) => right,
+                None if self.as_expression(other).is_some() => return Err(undecided()),
+                None => {
+                    let kind = self.store.kind(other);
+                    return Err(mistake(format!(
+                        "a condition on the point goes together with another one, not with {kind}"
+                    ))
+                    .help("write p.x > 0 and p.y > 0"));
+                }
+            },
+        };
+        self.formula_condition(if both {
+            left.min(right)
+        } else {
+            left.max(right)
+        })
+    }
+
+    /// The value of a field at a point: of a formula, or of numbers.
+    pub(crate) fn ask_field(
+        &mut self,
+        field: &Field,
+        arguments: &[Argument<'a>],
+        place: Place,
+    ) -> Run<Value> {
+        self.charge(8 + field.facts().nodes.min(MOST_CALLED))?;
+        let builder = self.formula_of(arguments.iter().map(|a| a.value));
+        let plain = builder.is_none();
+        let builder = builder.unwrap_or_default();
+        let mut parts = Vec::new();
+        for argument in arguments {
+            if let Some(name) = &argument.name {
+                return Err(mistake(format!("a field has no argument `{name}`"))
+                    .help("ask it for its value at a point: s(p), or s((0, 1, 0))")
+                    .at(argument.place));
+            }
+            parts.push(self.operand(&builder, argument.value)?.ok_or_else(|| {
+                let kind = self.store.kind(argument.value);
+                mistake(format!(
+                    "a field is asked for its value at a point, not at {kind}"
+                ))
+                .help("s(p), or s((0, 1, 0))")
+                .at(argument.place)
+            })?);
+        }
+        let point = match &parts[..] {
+            [one] => one.clone(),
+            [] => {
+                let m = mistake("a field is asked for its value at a point");
+                return Err(m.help("s(p), or s((0, 1, 0))").at(place));
+            }
+            several => builder.vector(several),
+        };
+        let value = builder.field(field, &point);
+        builder.check().map_err(|e| told(&e).at(place))?;
+        if !plain {
+            return self.formula_value(value);
+        }
+        let steps = builder.finish(&value).map_err(|e| told(&e).at(place))?;
+        let origin = zeroset_number::F64(0.0);
+        let value = steps.eval(zeroset_number::v3(origin, origin, origin)).0;
+        if value.is_finite() {
+            return Ok(Value::Float(value));
+        }
+        Err(mistake("the field has no value there").at(place))
+    }
+
+    /// `rotate(p, axis, theta)`, or `rotate(p, theta)` of a vector of 2.
+    fn call_rotate(&mut self, arguments: &[Argument<'a>], place: Place) -> Run<Value> {
+        let names = ROTATE.params;
+        let (mut given, mut next) = ([None; 3], 0);
+        for argument in arguments {
+            let at = match &argument.name {
+                None => next,
+                Some(name) => names.iter().position(|n| n == name).ok_or_else(|| {
+                    let help = crate::report::suggestion(name, names.iter().copied());
+                    mistake(format!("rotate() has no argument `{name}`"))
+                        .maybe_help(help)
+                        .at(argument.place)
+                })?,
+            };
+            next += usize::from(argument.name.is_none());
+            let free = given.get_mut(at).filter(|g| g.is_none());
+            let Some(free) = free else {
+                return Err(mistake(
+                    "rotate() takes a vector of 3, an axis and radians, or a vector of 2 and radians",
+                )
+                .at(argument.place));
+            };
+            *free = Some(Given {
+                value: argument.value,
+                place: argument.place,
+            });
+        }
+        let wrong = || {
+            mistake(
+                "rotate() takes a vector of 3, an axis and radians, or a vector of 2 and radians",
+            )
+            .help("rotate(p, \"y\", 0.5), rotate(p, (1, 1, 0), p.y), rotate(p.xz, 0.5)")
+            .at(place)
+        };
+        let (p, axis, theta) = match given {
+            [Some(p), Some(theta), None] => (p, None, theta),
+            [Some(p), None, Some(theta)] => (p, None, theta),
+            [Some(p), Some(axis), Some(theta)] => (p, Some(axis), theta),
+            _ => return Err(wrong()),
+        };
+        if matches!(p.value, Value::Thing(i) if matches!(self.store.thing(i), Thing::Field(_))) {
+            return Err(mistake("rotate() turns vectors of formulas, and this is a field")
+                .help("shape.turn(y = 30) or shape.turn(axis = (1, 1, 0), angle = 30), in degrees")
+                .at(p.place));
+        }
+        let builder = self.formula_of([p.value, theta.value]);
+        let plain = builder.is_none();
+        let builder = builder.unwrap_or_default();
+        let vector = self.operand(&builder, p.value)?.ok_or_else(wrong)?;
+        let theta = self.operand(&builder, theta.value)?.ok_or_else(wrong)?;
+        let turned = match axis {
+            None => vector.turned(theta),
+            Some(axis) => {
+                let direction = match axis.value {
+                    Value::Text(i) => super::fields::direction_of_word(self.store.text(i)),
+                    other => self.store.items(other).and_then(three_numbers),
+                };
+                let direction = direction.filter(|d| d.iter().any(|x| *x != 0.0));
+                let direction = direction.ok_or_else(|| {
+                    mistake("`axis` of rotate() must be \"x\", \"y\", \"z\" or three numbers that are not all 0")
+                        .at(axis.place)
+                })?;
+                vector.rotate(direction, theta)
+            }
+        };
+        builder.check().map_err(|e| told(&e).at(place))?;
+        if plain {
+            return self.plain_value(&turned, "rotate");
+        }
+        self.formula_value(turned)
+    }
+
+    /// `where(condition, a, b)`.
+    fn call_where(&mut self, arguments: &[Argument<'a>], place: Place) -> Run<Value> {
+        let [condition, yes, no] = arguments else {
+            let m = mistake("where() takes a condition and two values");
+            return Err(m
+                .help("where(p.x > 0, a, b) is a if p.x > 0 else b")
+                .at(place));
+        };
+        match (condition.value, self.as_condition(condition.value)) {
+            (_, Some(holds)) => self.chosen(&holds, yes.value, no.value),
+            (Value::Bool(holds), _) => Ok(if holds { yes.value } else { no.value }),
+            (other, _) => {
+                let kind = self.store.kind(other);
+                let m = mistake(format!(
+                    "where() needs a condition such as p.x > 0, not {kind}"
+                ));
+                Err(m.at(condition.place))
+            }
+        }
+    }
+
+    /// A constant as a number, or a tuple of numbers.
+    pub(crate) fn plain_value(&mut self, value: &Expression, name: &str) -> Run<Value> {
+        let numbers: Option<Vec<f64>> = match value.parts() {
+            1 => value.as_constant().map(|x| vec![x]),
+            n => (0..n).map(|k| value.part(k).as_constant()).collect(),
+        };
+        match numbers.as_deref() {
+            Some([x]) => Ok(Value::Float(*x)),
+            Some(numbers) => {
+                self.grow_items(numbers.len())?;
+                self.tuple(numbers.iter().map(|x| Value::Float(*x)).collect())
+            }
+            None => {
+                // what is not folded, as noise, is evaluated
+                let mut numbers = Vec::new();
+                for k in 0..value.parts() {
+                    let steps = value
+                        .builder()
+                        .finish(&value.part(k))
+                        .map_err(|e| told(&e))?;
+                    let o = zeroset_number::F64(0.0);
+                    numbers.push(steps.eval(zeroset_number::v3(o, o, o)).0);
+                }
+                match numbers[..] {
+                    _ if numbers.iter().any(|x| !x.is_finite()) => {
+                        Err(mistake(format!("{name}() has no value for this")))
+                    }
+                    [x] => Ok(Value::Float(x)),
+                    _ => {
+                        self.grow_items(numbers.len())?;
+                        self.tuple(numbers.into_iter().map(Value::Float).collect())
+                    }
+                }
+            }
+        }
+    }
+
     /// The formula that one of the values belongs to, be it inside of a tuple.
     pub(crate) fn formula_of(&self, values: impl IntoIterator<Item = Value>) -> Option<Builder> {
         values.into_iter().find_map(|value| {
@@ -182,13 +683,15 @@ impl<'a> Machine<'a> {
                 .filter(|items| items.len() <= 4)
                 .unwrap_or_default();
             let mut all = std::iter::once(&value).chain(inner);
-            all.find_map(|v| self.as_expression(*v))
-                .map(|e| e.builder().clone())
+            all.find_map(|v| match self.as_expression(*v) {
+                Some(e) => Some(e.builder().clone()),
+                None => self.as_condition(*v).map(|c| c.builder().clone()),
+            })
         })
     }
 
     /// A number, a tuple of numbers, or a value of the formula as a value of the formula; `None` for anything else.
-    fn operand(&self, builder: &Builder, value: Value) -> Run<Option<Expression>> {
+    pub(crate) fn operand(&self, builder: &Builder, value: Value) -> Run<Option<Expression>> {
         Ok(match value {
             Value::Int(i) => Some(builder.constant(i as f64)),
             Value::Float(x) => Some(builder.constant(x)),
@@ -229,6 +732,13 @@ impl<'a> Machine<'a> {
         ) else {
             return Ok(None);
         };
+        if let Some(condition) = compared(op, &x, &y) {
+            if x.parts() != 1 || y.parts() != 1 {
+                let m = mistake("numbers can be compared, vectors cannot: which is larger?");
+                return Err(m.help("compare parts or lengths: p.x > 0, length(p) < 1"));
+            }
+            return self.formula_condition(condition).map(Some);
+        }
         let value = match op {
             BinOp::Add => x + y,
             BinOp::Subtract => x - y,
@@ -236,12 +746,6 @@ impl<'a> Machine<'a> {
             BinOp::Divide => x / y,
             BinOp::Percent => x.modulo(&y),
             BinOp::FloorDivide => (x / y).floor(),
-            BinOp::Less
-            | BinOp::LessOrEqual
-            | BinOp::Greater
-            | BinOp::GreaterOrEqual
-            | BinOp::Equal
-            | BinOp::NotEqual => return Err(incomparable()),
             _ => return Ok(None),
         };
         self.formula_value(value).map(Some)
@@ -262,7 +766,7 @@ impl<'a> Machine<'a> {
         Some(match part {
             Some(part) => self.formula_value(part),
             None => Err(mistake(format!("a point of a formula has no `{name}`"))
-                .help("there are p.x, p.y, p.z, p.xy, p.xz and the like")),
+                .help("there are p.x, p.y, p.z, p.xy, p.xz and the like, and p[0], p[1], p[2]")),
         })
     }
 
@@ -273,6 +777,15 @@ impl<'a> Machine<'a> {
         arguments: &[Argument<'a>],
         place: Place,
     ) -> Run<Value> {
+        if function.name == ROTATE.name {
+            return self.call_rotate(arguments, place);
+        }
+        if function.name == WHERE.name {
+            return self.call_where(arguments, place);
+        }
+        if function.name == EASE.name {
+            return self.call_ease(arguments, place);
+        }
         self.charge(4 * arguments.len() as u64)?;
         let items = arguments.iter().filter_map(|a| self.store.items(a.value));
         let items: u64 = items.map(|i| i.len() as u64).sum();
@@ -288,20 +801,17 @@ impl<'a> Machine<'a> {
         let listed = self.listed(function, arguments);
         let arguments = listed.as_deref().unwrap_or(arguments);
         let mut sorted: Vec<Option<Expression>> =
-            vec![None; function.params.len().max(arguments.len())];
+            vec![None; (function.params.len() + function.optional.len()).max(arguments.len())];
+        let names = || function.params.iter().chain(function.optional);
         for (i, argument) in arguments.iter().enumerate() {
             let at = match &argument.name {
                 None => i,
-                Some(name) => function
-                    .params
-                    .iter()
-                    .position(|p| p == name)
-                    .ok_or_else(|| {
-                        let help = crate::report::suggestion(name, function.params.iter().copied());
-                        mistake(format!("{}() has no argument `{name}`", function.name))
-                            .maybe_help(help)
-                            .at(argument.place)
-                    })?,
+                Some(name) => names().position(|p| p == name).ok_or_else(|| {
+                    let help = crate::report::suggestion(name, names().copied());
+                    mistake(format!("{}() has no argument `{name}`", function.name))
+                        .maybe_help(help)
+                        .at(argument.place)
+                })?,
             };
             let value = self.operand(&builder, argument.value)?.ok_or_else(|| {
                 let kind = self.store.kind(argument.value);
@@ -312,7 +822,7 @@ impl<'a> Machine<'a> {
                 return Err(mistake(message).at(argument.place));
             }
         }
-        let mut given: Vec<Expression> = sorted.into_iter().flatten().collect();
+        let given: Vec<Expression> = sorted.into_iter().flatten().collect();
         if given.is_empty() {
             return Err(mistake(format!(
                 "{}() needs {}",
@@ -320,32 +830,10 @@ impl<'a> Machine<'a> {
                 function.params.join(", ")
             )));
         }
-        let degrees = 1_f64.to_radians();
-        let angle = Angle::of(function.name);
-        if angle == Angle::Taken {
-            given = given.into_iter().map(|x| x * degrees).collect();
-        }
-        let mut value = function.call(&given).map_err(|e| told(&e).at(place))?;
-        if angle == Angle::Given {
-            value = value * degrees.recip();
-        }
+        let value = function.call(&given).map_err(|e| told(&e).at(place))?;
         if plain {
             // a function of nothing but numbers is a number, or a tuple of numbers
-            let numbers: Option<Vec<f64>> = match value.parts() {
-                1 => value.as_constant().map(|x| vec![x]),
-                n => (0..n).map(|k| value.part(k).as_constant()).collect(),
-            };
-            return match numbers.as_deref() {
-                Some([x]) => Ok(Value::Float(*x)),
-                Some(numbers) => {
-                    self.grow_items(numbers.len())?;
-                    self.tuple(numbers.iter().map(|x| Value::Float(*x)).collect())
-                }
-                None => Err(mistake(format!(
-                    "{}() has no value for this",
-                    function.name
-                ))),
-            };
+            return self.plain_value(&value, function.name);
         }
         self.formula_value(value)
     }
@@ -376,7 +864,64 @@ impl<'a> Machine<'a> {
             }
             _ => None,
         };
-        own.or_else(listed)?;
+        // of plain numbers, what has another meaning too
+        let vectors = || {
+            let three = |a: &Argument<'a>| self.store.items(a.value).and_then(three_numbers);
+            let all = name == "cross"
+                && arguments.len() == 2
+                && arguments.iter().all(|a| three(a).is_some());
+            all.then(Builder::new)
+        };
+        own.or_else(listed).or_else(vectors)?;
         functions().iter().find(|f| f.name == name)
+    }
+}
+
+/// The comparison of two values, if the operator is one: 1 where it holds, else 0.
+fn compared(op: BinOp, x: &Expression, y: &Expression) -> Option<Expression> {
+    Some(match op {
+        BinOp::Less => x.less(y),
+        BinOp::Greater => y.less(x),
+        BinOp::LessOrEqual => y.less(x).negated(),
+        BinOp::GreaterOrEqual => x.less(y).negated(),
+        BinOp::Equal => x.less(y).max(y.less(x)).negated(),
+        BinOp::NotEqual => x.less(y).max(y.less(x)),
+        _ => return None,
+    })
+}
+
+/// Whether two values are one and the same.
+fn same_value(a: Value, b: Value) -> bool {
+    match (a, b) {
+        (Value::None, Value::None) => true,
+        (Value::Bool(a), Value::Bool(b)) => a == b,
+        (Value::Int(a), Value::Int(b)) => a == b,
+        (Value::Float(a), Value::Float(b)) => a.to_bits() == b.to_bits(),
+        (Value::Text(a), Value::Text(b))
+        | (Value::List(a), Value::List(b))
+        | (Value::Tuple(a), Value::Tuple(b))
+        | (Value::Dict(a), Value::Dict(b))
+        | (Value::Range(a), Value::Range(b))
+        | (Value::Function(a), Value::Function(b))
+        | (Value::Bound(a), Value::Bound(b))
+        | (Value::Thing(a), Value::Thing(b)) => a == b,
+        (Value::Native(a), Value::Native(b)) => std::ptr::eq(a, b),
+        (Value::Primitive(a), Value::Primitive(b)) => std::ptr::eq(a, b),
+        (Value::Join(a), Value::Join(b)) => std::ptr::eq(a, b),
+        (Value::Formula(a), Value::Formula(b)) => std::ptr::eq(a, b),
+        _ => false,
+    }
+}
+
+/// Three plain numbers.
+fn three_numbers(items: &[Value]) -> Option<[f64; 3]> {
+    let number = |value: &Value| match *value {
+        Value::Int(i) => Some(i as f64),
+        Value::Float(x) => Some(x),
+        _ => None,
+    };
+    match items {
+        [x, y, z] => Some([number(x)?, number(y)?, number(z)?]),
+        _ => None,
     }
 }

@@ -15,6 +15,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Duration;
 use web_time::Instant;
+use zeroset_field::formula::Expression;
 
 /// Steps between two looks at the clock.
 const CLOCK: u64 = 1024;
@@ -83,6 +84,10 @@ pub(crate) struct Machine<'a> {
     pub(crate) module: u32,
     pub(crate) calls: u64,
     pub(crate) depth: Depth,
+    /// What running functions give back where a condition on the point holds.
+    pub(crate) pending: Vec<(Expression, Value)>,
+    /// Branches around that a condition on the point decides.
+    pub(crate) branches: u32,
     /// The variables of functions and comprehensions, by where they are in the syntax tree.
     locals: HashMap<usize, Locals<'a>>,
     ticks: u64,
@@ -107,6 +112,8 @@ impl<'a> Machine<'a> {
             module: 0,
             calls: 0,
             depth: Depth::new(),
+            pending: Vec::new(),
+            branches: 0,
             locals: HashMap::new(),
             ticks: 0,
             heap: 0,
@@ -153,6 +160,9 @@ impl<'a> Machine<'a> {
         match value {
             Value::Thing(i) if matches!(self.store.thing(i), Thing::Expression(_)) => {
                 Err(super::formulas::undecided())
+            }
+            Value::Thing(i) if matches!(self.store.thing(i), Thing::Condition(_)) => {
+                Err(super::formulas::conditional())
             }
             _ => Ok(self.store.is_true(value)),
         }

@@ -1,4 +1,5 @@
-//! Mathematics. Angles are degrees here too, as everywhere in scene files.
+//! Mathematics. Functions of numbers take and give radians, as in Python, in shaders and in books; parameters of shapes that are
+//! called angle are degrees.
 
 use super::mistake::{Run, mistake};
 use super::native::{Call, Given, Native, Slot, slot};
@@ -16,60 +17,64 @@ macro_rules! function {
 const X: Slot = slot("x", "", "A number.");
 const Y: Slot = slot("y", "", "A number.");
 
-/// What a function has to do with angles, which are degrees in scene files and radians in formulas.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Angle {
-    /// It takes one.
-    Taken,
-    /// It gives one.
-    Given,
-    /// Nothing.
-    None,
-}
-
-impl Angle {
-    /// Of the function with this name.
-    pub(crate) fn of(name: &str) -> Angle {
-        match name {
-            "sin" | "cos" | "tan" => Angle::Taken,
-            "asin" | "acos" | "atan" | "atan2" => Angle::Given,
-            _ => Angle::None,
-        }
-    }
-}
-
-/// Constants by name.
-pub(crate) const CONSTANTS: &[(&str, f64)] =
-    &[("pi", std::f64::consts::PI), ("tau", std::f64::consts::TAU)];
+/// Constants: name, one line, value.
+pub(crate) const CONSTANTS: &[(&str, &str, f64)] = &[
+    (
+        "pi",
+        "3.14159..., half a turn in radians.",
+        std::f64::consts::PI,
+    ),
+    (
+        "tau",
+        "6.28318..., a whole turn in radians.",
+        std::f64::consts::TAU,
+    ),
+];
 
 /// The functions.
 pub(crate) const ALL: &[Native] = &[
-    function!("sin", "Sine of an angle in degrees.", sine),
-    function!("cos", "Cosine of an angle in degrees.", |x| sine(x + 90.0)),
-    function!("tan", "Tangent of an angle in degrees.", |x| x
-        .to_radians()
-        .tan()),
+    function!("sin", "Sine of x in radians.", f64::sin),
+    function!("cos", "Cosine of x in radians.", f64::cos),
+    function!("tan", "Tangent of x in radians.", f64::tan),
     function!(
         "asin",
-        "The angle in degrees whose sine is x, from -1 to 1.",
-        |x| x.asin().to_degrees()
+        "The radians whose sine is x, from -1 to 1.",
+        f64::asin
     ),
     function!(
         "acos",
-        "The angle in degrees whose cosine is x, from -1 to 1.",
-        |x| x.acos().to_degrees()
+        "The radians whose cosine is x, from -1 to 1.",
+        f64::acos
     ),
-    function!("atan", "The angle in degrees whose tangent is x.", |x| x
-        .atan()
-        .to_degrees()),
+    function!(
+        "atan",
+        "The radians whose tangent is y; of two numbers, those of the point (x, y).",
+        [Y, slot("x", "None", "A number.")],
+        |c| match c.get("x") {
+            Some(_) => two(c, ["y", "x"], f64::atan2),
+            None => {
+                let given = c.need("y")?;
+                let y = c.number("y", given)?;
+                finite(c, y.atan())
+            }
+        }
+    ),
     function!(
         "atan2",
-        "The angle in degrees of the point (x, y).",
+        "The radians of the point (x, y).",
         [Y, X],
-        |c| two(c, ["y", "x"], |y, x| y.atan2(x).to_degrees())
+        |c| two(c, ["y", "x"], f64::atan2)
     ),
-    function!("radians", "Radians of degrees.", f64::to_radians),
-    function!("degrees", "Degrees of radians.", f64::to_degrees),
+    function!(
+        "radians",
+        "Radians of x in degrees: sin(radians(30)) is 0.5.",
+        f64::to_radians
+    ),
+    function!(
+        "degrees",
+        "Degrees of x in radians, for parameters called angle.",
+        f64::to_degrees
+    ),
     function!(
         "sqrt",
         "Square root of a number that is not negative.",
@@ -179,18 +184,6 @@ pub(crate) const ALL: &[Native] = &[
         run: random,
     },
 ];
-
-/// Sine of degrees, exact at multiples of 90.
-pub(crate) fn sine(degrees: f64) -> f64 {
-    let x = degrees % 360.0;
-    match x {
-        0.0 => x,
-        90.0 | -270.0 => 1.0,
-        180.0 | -180.0 => 0.0,
-        270.0 | -90.0 => -1.0,
-        _ => x.to_radians().sin(),
-    }
-}
 
 fn finite(c: &Call<'_, '_>, x: f64) -> Run<Value> {
     if x.is_nan() {

@@ -16,7 +16,9 @@
 //! | `run`, `calls`, `operators`, `sequences`, `text` | the language itself |
 //! | `builtins`, `methods`, `math` | everyday functions |
 //! | `fields`, `place` | the catalogue as functions and methods |
-//! | `formulas`, `lettering`, `sampling` | fields from formulas, from letters and from files |
+//! | `synonyms` | what other tools call things |
+//! | `formulas`, `shaping` | fields from formulas, between fields and along curves |
+//! | `lettering`, `sampling` | fields from letters and from files |
 //! | `materials`, `stage`, `rendering`, `parameters` | everything else of a scene |
 
 mod builtins;
@@ -41,12 +43,15 @@ mod run;
 mod sampling;
 mod scope;
 mod sequences;
+mod shaping;
 mod stage;
+mod synonyms;
 mod text;
 mod value;
 
 pub(crate) use fields::direction_of_word;
 pub(crate) use native::spoken;
+pub use synonyms::{SYNONYMS, Synonym};
 
 use crate::draft::Draft;
 use crate::limits::Limits;
@@ -59,6 +64,7 @@ use std::sync::LazyLock;
 use value::Value;
 use web_time::Instant;
 use zeroset_catalogue::entries::catalogue;
+use zeroset_field::formula::Function;
 
 /// Functions of this crate that stand alone.
 fn natives() -> impl Iterator<Item = &'static Native> {
@@ -72,14 +78,16 @@ fn natives() -> impl Iterator<Item = &'static Native> {
         rendering::all(),
         parameters::ALL,
         sampling::ALL,
+        shaping::ALL,
     ]
     .into_iter()
     .flatten()
 }
 
-/// Whether a function of this crate that stands alone has this name.
+/// Whether a function that stands alone has this name: one of this crate, a shape, a join.
 pub(crate) fn is_native(name: &str) -> bool {
-    natives().any(|n| n.name == name) || catalogue().join(name).is_some()
+    let all = catalogue();
+    natives().any(|n| n.name == name) || all.join(name).is_some() || all.primitive(name).is_some()
 }
 
 /// Every name that is there without being defined.
@@ -100,7 +108,7 @@ pub(crate) fn builtins() -> &'static HashMap<&'static str, Value> {
         .chain(
             math::CONSTANTS
                 .iter()
-                .map(|(name, x)| (*name, Value::Float(*x))),
+                .map(|(name, _, x)| (*name, Value::Float(*x))),
         )
         .chain(words)
         .collect()
@@ -138,35 +146,81 @@ fn check(draft: &Draft) -> Run<()> {
 pub struct Word {
     /// Its name.
     pub name: &'static str,
+    /// What it is: a function, a function of formulas, a method (of a field, or of what is said), a constant.
+    pub kind: &'static str,
     /// One line.
     pub doc: &'static str,
     /// The section of the reference it stands in.
     pub group: &'static str,
     /// Its parameters: name, how the default is written (empty where there is none), one line.
     pub params: Vec<(&'static str, &'static str, &'static str)>,
-    /// Whether it is called on a field, as in `shape.move(x = 1)`.
-    pub method: bool,
+    /// Whether more values may follow.
+    pub more: bool,
+}
+
+impl Word {
+    fn of(native: &'static Native, kind: &'static str) -> Word {
+        let params = native.params.iter().map(|p| (p.name, p.default, p.doc));
+        Word {
+            name: native.name,
+            kind,
+            doc: native.doc,
+            group: native.group,
+            params: params.collect(),
+            more: native.rest,
+        }
+    }
+
+    fn of_formulas(function: &'static Function) -> Word {
+        let params = function.params.iter().map(|name| (*name, "", ""));
+        let optional = function.optional.iter().map(|name| (*name, "...", ""));
+        Word {
+            name: function.name,
+            kind: "function of formulas",
+            doc: function.doc,
+            group: "Formulas",
+            params: params.chain(optional).collect(),
+            more: function.more,
+        }
+    }
 }
 
 /// What the language offers beside the catalogue of fields.
 pub fn words() -> Vec<Word> {
-    let word = |n: &'static Native, method| {
-        let params = n
-            .params
-            .iter()
-            .map(|p| (p.name, p.default, p.doc))
-            .collect();
-        Word {
-            name: n.name,
-            doc: n.doc,
-            group: n.group,
-            params,
-            method,
-        }
-    };
-    natives()
-        .map(|n| word(n, false))
-        .chain(place::METHODS.iter().map(|n| word(n, true)))
-        .chain(materials::METHODS.iter().map(|n| word(n, true)))
+    let constants = math::CONSTANTS.iter().map(|(name, doc, _)| Word {
+        name,
+        kind: "constant",
+        doc,
+        group: "Mathematics",
+        params: Vec::new(),
+        more: false,
+    });
+    (natives().map(|n| Word::of(n, "function")))
+        .chain(constants)
+        .chain(formulas::more_functions().map(Word::of_formulas))
+        .chain(fields::own_methods().map(|n| Word::of(n, "method")))
+        .chain([Word::of(&formulas::DISPLACE, "method")])
+        .chain(fields::synonymous_methods())
+        .chain((materials::METHODS.iter()).map(|n| Word::of(n, "method of a pattern")))
+        .chain(
+            methods::TEXT
+                .iter()
+                .map(|n| Word::of(n, "method of a text")),
+        )
+        .chain(
+            methods::LIST
+                .iter()
+                .map(|n| Word::of(n, "method of a list")),
+        )
+        .chain(
+            methods::DICT
+                .iter()
+                .map(|n| Word::of(n, "method of a dict")),
+        )
         .collect()
+}
+
+/// The functions that formulas may call, those of plain numbers among them.
+pub fn formula_functions() -> Vec<Word> {
+    formulas::all_functions().map(Word::of_formulas).collect()
 }

@@ -2,6 +2,7 @@
 
 use super::machine::Machine;
 use super::mistake::{Mistake, Run, mistake};
+use super::synonyms;
 use super::value::Value;
 use crate::report::{Place, suggestion};
 use std::borrow::Cow;
@@ -77,6 +78,13 @@ impl<'m, 'a> Call<'m, 'a> {
         place: Place,
     ) -> Run<Call<'m, 'a>> {
         let mut given: Vec<Option<Given>> = vec![None; params.len()];
+        let apart = |params: &[&str], arguments: &[Argument<'a>]| {
+            let places = arguments.iter().filter(|a| a.name.is_none()).count();
+            (places > params.len())
+                .then(|| synonyms::of_numbers(name, arguments))
+                .flatten()
+        };
+        let apart = apart(&params, &arguments);
         let (mut rest, mut next) = (Vec::new(), 0);
         for argument in arguments {
             let (value, at) = (argument.value, argument.place);
@@ -97,7 +105,7 @@ impl<'m, 'a> Call<'m, 'a> {
                     };
                     let help =
                         (params.len() > 1).then(|| format!("they are {}", params.join(", ")));
-                    return Err(mistake(message).maybe_help(help).at(at));
+                    return Err(mistake(message).maybe_help(apart).maybe_help(help).at(at));
                 }
                 Some(written) => params.iter().position(|p| p == written).ok_or_else(|| {
                     let message = match params.as_slice() {
@@ -105,6 +113,7 @@ impl<'m, 'a> Call<'m, 'a> {
                         _ => format!("{name}() has no argument `{written}`"),
                     };
                     mistake(message)
+                        .maybe_help(synonyms::of_argument(&params, written))
                         .maybe_help(suggestion(written, params.iter().copied()))
                         .at(at)
                 })?,

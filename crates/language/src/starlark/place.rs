@@ -60,6 +60,11 @@ pub(crate) const METHODS: &[Native] = &[
         [slot("factor", "", "How many times larger; above 0.")],
         |c| {
             let given = c.need("factor")?;
+            if matches!(given.value, Value::Tuple(_) | Value::List(_)) {
+                return Err(mistake("scale() takes one factor for all directions")
+                    .help("a factor for each axis is stretch: .stretch((1, 2, 1))")
+                    .at(given.place));
+            }
             let factor = c.ranged("factor", given, SMALL, LARGE)?;
             place(c, Placement::scaled(factor))
         }
@@ -133,6 +138,7 @@ pub(crate) const METHODS: &[Native] = &[
             c.machine.tuple(both)
         }
     ),
+    super::formulas::MAP,
 ];
 
 fn place(c: &mut Call<'_, '_>, placement: Placement) -> Run<Value> {

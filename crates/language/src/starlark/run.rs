@@ -10,6 +10,7 @@ use starlark_syntax::syntax::ast::{
     AssignOp, AssignTargetP, AstAssignTarget, AstExpr, AstLiteral, AstNoPayload, AstParameter,
     AstStmt, BinOp, ClauseP, ExprP, ForClauseP, LoadP, ParameterP, StmtP,
 };
+use zeroset_field::formula::Expression;
 
 /// `for` clauses and conditions of a comprehension.
 const MAX_CLAUSES: usize = 16;
@@ -20,6 +21,17 @@ pub(crate) enum Flow {
     Break,
     Continue,
     Return(Value),
+}
+
+/// Bytes that a value counts as which a function gives back where a condition holds.
+const PENDING: usize = 64;
+
+/// A condition.
+enum Decided {
+    /// The same for all points.
+    Plain(bool),
+    /// Another at each point of a formula.
+    ByPoint(Expression),
 }
 
 type For = ForClauseP<AstNoPayload>;
@@ -65,19 +77,16 @@ impl<'a> Machine<'a> {
                 self.modify(target, *op, rhs)
                     .map_err(|m| m.at(self.place(stmt.span)))?;
             }
-            StmtP::If(cond, body) => {
-                if self.condition(cond)? {
-                    return self.statement(body);
-                }
-            }
-            StmtP::IfElse(cond, both) => {
-                let branch = if self.condition(cond)? {
-                    &both.0
-                } else {
-                    &both.1
-                };
-                return self.statement(branch);
-            }
+            StmtP::If(cond, body) => match self.decided(cond)? {
+                Decided::Plain(true) => return self.statement(body),
+                Decided::Plain(false) => {}
+                Decided::ByPoint(c) => return self.both_branches(&c, body, None),
+            },
+            StmtP::IfElse(cond, both) => match self.decided(cond)? {
+                Decided::Plain(true) => return self.statement(&both.0),
+                Decided::Plain(false) => return self.statement(&both.1),
+                Decided::ByPoint(c) => return self.both_branches(&c, &both.0, Some(&both.1)),
+            },
             StmtP::For(f) => {
                 return self.loop_over(&f.over, |m, item| {
                     m.assign(&f.var, item)?;
@@ -110,6 +119,97 @@ impl<'a> Machine<'a> {
             StmtP::Pass => {}
         }
         Ok(Flow::Next)
+    }
+
+    /// A condition, which a point may decide.
+    fn decided(&mut self, e: &'a AstExpr) -> Run<Decided> {
+        let value = self.eval(e)?;
+        match self.as_condition(value) {
+            Some(condition) => Ok(Decided::ByPoint(condition)),
+            None => {
+                let truth = self.truth(value).map_err(|m| m.at(self.place(e.span)))?;
+                Ok(Decided::Plain(truth))
+            }
+        }
+    }
+
+    /// Runs both branches of an `if` that the point of a formula decides: the formula is written down once, for all points.
+    /// Variables then have the value of the one branch or of the other, and what a branch gives back is what the function
+    /// gives back where its condition holds.
+    fn both_branches(
+        &mut self,
+        condition: &Expression,
+        yes: &'a AstStmt,
+        no: Option<&'a AstStmt>,
+    ) -> Run<Flow> {
+        let Some(frame) = self.frame else {
+            return Err(super::formulas::conditional());
+        };
+        let frame = frame as usize;
+        self.charge(self.frames[frame].values.len() as u64)?;
+        let before = self.frames[frame].values.clone();
+        let other = condition.negated();
+        self.branches += 1;
+        let first = self.guarded(condition, yes);
+        let first = first.map(|flow| {
+            let values = std::mem::replace(&mut self.frames[frame].values, before);
+            (flow, values)
+        });
+        let second = match (&first, no) {
+            (Ok(_), Some(no)) => self.guarded(&other, no),
+            _ => Ok(Flow::Next),
+        };
+        self.branches -= 1;
+        let (first, values) = first?;
+        match (first, second?) {
+            (Flow::Return(a), Flow::Return(b)) => self.chosen(condition, a, b).map(Flow::Return),
+            (Flow::Return(a), Flow::Next) => {
+                self.grow(PENDING)?;
+                self.pending.push((condition.clone(), a));
+                Ok(Flow::Next)
+            }
+            (Flow::Next, Flow::Return(b)) => {
+                self.grow(PENDING)?;
+                self.frames[frame].values = values;
+                self.pending.push((other, b));
+                Ok(Flow::Next)
+            }
+            (Flow::Next, Flow::Next) => {
+                for (i, yes) in values.into_iter().enumerate() {
+                    let merged = match (yes, self.frames[frame].values[i]) {
+                        (Some(yes), Some(no)) => Some(self.chosen(condition, yes, no)?),
+                        (yes, no) => yes.or(no),
+                    };
+                    self.frames[frame].values[i] = merged;
+                }
+                Ok(Flow::Next)
+            }
+            _ => Err(mistake(
+                "`break` and `continue` cannot depend on the point: a loop runs the same for all points",
+            )
+            .help("choose the value instead: d = a if condition else d")),
+        }
+    }
+
+    /// Runs a branch; what it gives back on its way counts where the condition holds as well.
+    fn guarded(&mut self, condition: &Expression, branch: &'a AstStmt) -> Run<Flow> {
+        let from = self.pending.len();
+        let flow = self.statement(branch)?;
+        for (holds, _) in &mut self.pending[from..] {
+            *holds = condition.min(&*holds);
+        }
+        Ok(flow)
+    }
+
+    /// What a function gives back, from what it gave back where conditions hold and else; `from` is where its own begin.
+    pub(crate) fn returned(&mut self, from: usize, last: Value) -> Run<Value> {
+        let mut result = last;
+        while self.pending.len() > from {
+            if let Some((condition, value)) = self.pending.pop() {
+                result = self.chosen(&condition, value, result)?;
+            }
+        }
+        Ok(result)
     }
 
     fn condition(&mut self, e: &'a AstExpr) -> Run<bool> {
@@ -284,6 +384,11 @@ impl<'a> Machine<'a> {
             ExprP::Op(left, BinOp::And, right) => {
                 let place = self.place(left.span);
                 let left = self.eval(left)?;
+                if let Some(condition) = self.as_condition(left) {
+                    let at = self.place(right.span);
+                    let right = self.eval(right)?;
+                    return self.combined(&condition, right, true).map_err(|m| m.at(at));
+                }
                 if self.truth(left).map_err(|m| m.at(place))? {
                     self.eval(right)
                 } else {
@@ -293,6 +398,13 @@ impl<'a> Machine<'a> {
             ExprP::Op(left, BinOp::Or, right) => {
                 let place = self.place(left.span);
                 let left = self.eval(left)?;
+                if let Some(condition) = self.as_condition(left) {
+                    let at = self.place(right.span);
+                    let right = self.eval(right)?;
+                    return self
+                        .combined(&condition, right, false)
+                        .map_err(|m| m.at(at));
+                }
                 if self.truth(left).map_err(|m| m.at(place))? {
                     Ok(left)
                 } else {
@@ -303,7 +415,10 @@ impl<'a> Machine<'a> {
                 let (left, right) = (self.eval(left)?, self.eval(right)?);
                 self.operate(*op, left, right)
             }
-            ExprP::Not(x) => Ok(Value::Bool(!self.condition(x)?)),
+            ExprP::Not(x) => match self.decided(x)? {
+                Decided::Plain(truth) => Ok(Value::Bool(!truth)),
+                Decided::ByPoint(condition) => self.formula_condition(condition.negated()),
+            },
             ExprP::Minus(x) => {
                 let x = self.eval(x)?;
                 self.negate(x)
@@ -312,6 +427,7 @@ impl<'a> Machine<'a> {
                 let x = self.eval(x)?;
                 match x {
                     Value::Int(_) | Value::Float(_) => Ok(x),
+                    _ if self.formula_of([x]).is_some() && self.as_condition(x).is_none() => Ok(x),
                     other => Err(mistake(format!(
                         "`+` needs a number, not {}",
                         self.store.kind(other)
@@ -322,14 +438,14 @@ impl<'a> Machine<'a> {
                 let x = self.eval(x)?;
                 self.complement(x)
             }
-            ExprP::If(parts) => {
-                let branch = if self.condition(&parts.0)? {
-                    &parts.1
-                } else {
-                    &parts.2
-                };
-                self.eval(branch)
-            }
+            ExprP::If(parts) => match self.decided(&parts.0)? {
+                Decided::Plain(true) => self.eval(&parts.1),
+                Decided::Plain(false) => self.eval(&parts.2),
+                Decided::ByPoint(condition) => {
+                    let (yes, no) = (self.eval(&parts.1)?, self.eval(&parts.2)?);
+                    self.chosen(&condition, yes, no)
+                }
+            },
             ExprP::Tuple(items) => {
                 let items = self.eval_all(items)?;
                 self.tuple(items)

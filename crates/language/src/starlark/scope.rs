@@ -95,6 +95,7 @@ impl<'a, F: Fn(&str) -> bool> NameCheck<'a, F> {
             names.sort_unstable();
             names.extend(all.map(|name| name as &str));
             mistake(format!("there is no `{name}`"))
+                .maybe_help(super::synonyms::of_name(&name))
                 .maybe_help(suggestion(&name, names.iter().copied()))
                 .at(place)
         })

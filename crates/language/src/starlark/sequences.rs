@@ -55,7 +55,10 @@ impl<'a> Machine<'a> {
                 }
                 self.store.dict_mut(i).loops -= 1;
             }
-            other => return Err(self.not_a_sequence(other)),
+            other => match self.parts_of_vector(other)? {
+                Some(parts) => return self.each(parts, work),
+                None => return Err(self.not_a_sequence(other)),
+            },
         }
         Ok(())
     }
@@ -80,7 +83,9 @@ impl<'a> Machine<'a> {
             Value::Tuple(i) => Ok(self.store.tuple(i).len() as u64),
             Value::Dict(i) => Ok(self.store.dict(i).pairs.len() as u64),
             Value::Range(i) => Ok(self.store.range(i).length),
-            other => Err(mistake(format!("{} has no length", self.store.kind(other)))),
+            other => self
+                .vector_length(other)
+                .ok_or_else(|| mistake(format!("{} has no length", self.store.kind(other)))),
         }
     }
 
@@ -110,6 +115,7 @@ impl<'a> Machine<'a> {
 
     /// The items of a list that may change.
     pub(crate) fn change(&mut self, list: u32) -> Run<&mut Vec<Value>> {
+        self.check_branch()?;
         if self.store.list(list).loops > 0 {
             return Err(mistake("a list cannot change while a loop runs over it")
                 .help("loop over list(l) instead"));
@@ -179,11 +185,26 @@ impl<'a> Machine<'a> {
                 let at = self.place_in(index, self.length(object)?)?;
                 Ok(self.store.items(object).unwrap_or_default()[at as usize])
             }
-            other => Err(mistake(format!("{} has no items", self.store.kind(other)))),
+            other => match self.parts_of_vector(other)? {
+                Some(parts) => self.index(parts, index),
+                None => Err(mistake(format!("{} has no items", self.store.kind(other)))),
+            },
         }
     }
 
+    /// Refuses to change what outlives a branch that the point of a formula decides: both branches run.
+    fn check_branch(&self) -> Run<()> {
+        if self.branches == 0 {
+            return Ok(());
+        }
+        Err(mistake(
+            "lists and dicts cannot change where the point decides: both branches are written down",
+        )
+        .help("choose the value instead: d = a if condition else b"))
+    }
+
     pub(crate) fn set_index(&mut self, object: Value, index: Value, value: Value) -> Run<()> {
+        self.check_branch()?;
         match object {
             Value::Dict(i) => self.insert(i, index, value),
             Value::List(i) => {
@@ -204,7 +225,12 @@ impl<'a> Machine<'a> {
             Value::Text(_) | Value::List(_) | Value::Tuple(_) | Value::Range(_) => {
                 self.length(object)?
             }
-            other => return Err(mistake(format!("{} has no items", self.store.kind(other)))),
+            other => match self.parts_of_vector(other)? {
+                Some(parts) => return self.slice(parts, bounds),
+                None => {
+                    return Err(mistake(format!("{} has no items", self.store.kind(other))));
+                }
+            },
         };
         let length = i64::try_from(length).map_err(|_| mistake("this sequence is too long"))?;
         let [start, stop, step] = bounds.map(|b| b.filter(|v| !matches!(v, Value::None)));

@@ -75,7 +75,7 @@ pub(crate) const ALL: &[Native] = &[
             slot("fov", "40", "Height of what it sees, degrees, 1 to 170."),
             slot(
                 "direction",
-                "(-0.62, -0.48, -1)",
+                "(0.51, -0.48, -1)",
                 "Which way it looks, in place of an eye."
             ),
             slot(
@@ -361,6 +361,9 @@ fn show(c: &mut Call<'_, '_>) -> Run<Value> {
         Some(given) => c.material("material", given)?,
         None => Material::default().into(),
     };
+    if c.get("material").is_none() && field.facts().materials == 0 {
+        c.machine.draft.plain.push(count);
+    }
     let material = c
         .machine
         .draft

@@ -64,6 +64,8 @@ pub(crate) enum Thing {
     Orthographic(f64),
     /// A value of a formula that is being written down.
     Expression(Expression),
+    /// A condition on the point of a formula: 1 where it holds, else 0.
+    Condition(Expression),
 }
 
 impl Thing {
@@ -81,6 +83,7 @@ impl Thing {
             Thing::Nothing => "none()",
             Thing::Orthographic(_) => "an orthographic lens",
             Thing::Expression(_) => "a value of a formula",
+            Thing::Condition(_) => "a condition on the point of a formula",
         }
     }
 

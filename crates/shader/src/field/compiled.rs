@@ -21,13 +21,13 @@ pub(super) fn text(structure: &Structure) -> String {
 }
 
 /// Prints steps, one line each.
-struct Printer<'s> {
+pub(super) struct Printer<'s> {
     steps: &'s [Step],
-    out: String,
+    pub(super) out: String,
 }
 
 impl<'s> Printer<'s> {
-    fn of(steps: &'s [Step]) -> Self {
+    pub(super) fn of(steps: &'s [Step]) -> Self {
         Printer {
             steps,
             out: String::new(),
@@ -54,12 +54,12 @@ impl<'s> Printer<'s> {
     }
 
     /// The point or value that an operand is.
-    fn name(&self, operand: Operand) -> String {
+    pub(super) fn name(&self, operand: Operand) -> String {
         let Operand::Step(i) = operand else {
             return "p".into();
         };
         match self.steps[i].operation {
-            Operation::Warp(_) => format!("p{i}"),
+            Operation::Warp(_) | Operation::Put(_) => format!("p{i}"),
             // a marked value is the value
             Operation::Mark(..) => self.name(self.steps[i].a),
             _ => format!("d{i}"),
@@ -67,11 +67,11 @@ impl<'s> Printer<'s> {
     }
 
     /// The point or value that a step gives.
-    fn value(&mut self, functions: &mut Functions, i: usize, gradient: bool) {
+    pub(super) fn value(&mut self, functions: &mut Functions, i: usize, gradient: bool) {
         let step = &self.steps[i];
         let (point, operands) = match step.operation {
             Operation::Leaf(_) | Operation::Warp(_) => (Some(step.a), vec![step.a]),
-            Operation::Change(_) => (Some(step.b), vec![step.a, step.b]),
+            Operation::Put(_) | Operation::Change(_) => (Some(step.b), vec![step.a, step.b]),
             Operation::Pair(_) => (None, vec![step.a, step.b]),
             Operation::Mark(..) => return,
         };
@@ -108,6 +108,8 @@ impl Needed {
             if needed.marks[i] && plain[i].is_none() {
                 match step.operation {
                     Operation::Leaf(_) | Operation::Warp(_) => set(&mut needed.values, step.a),
+                    // a point has no marks
+                    Operation::Put(_) => {}
                     Operation::Change(_) | Operation::Mark(..) => set(&mut needed.marks, step.a),
                     Operation::Pair(_) => {
                         for operand in [step.a, step.b] {
@@ -119,7 +121,10 @@ impl Needed {
             }
             if needed.values[i] {
                 set(&mut needed.values, step.a);
-                if matches!(step.operation, Operation::Change(_) | Operation::Pair(_)) {
+                if matches!(
+                    step.operation,
+                    Operation::Put(_) | Operation::Change(_) | Operation::Pair(_)
+                ) {
                     set(&mut needed.values, step.b);
                 }
             }
@@ -164,7 +169,7 @@ fn marks(functions: &mut Functions, steps: &[Step], result: Operand) -> String {
             }
             Operation::Mark(0, number) => format!("mark_material({}, {number}.0)", of(step.a)),
             Operation::Mark(_, number) => format!("mark_object({}, {number}.0)", of(step.a)),
-            Operation::Warp(_) | Operation::Change(_) => continue,
+            Operation::Warp(_) | Operation::Put(_) | Operation::Change(_) => continue,
         };
         printer.line(&format!("m{i}"), &value);
     }

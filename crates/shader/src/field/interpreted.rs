@@ -75,7 +75,7 @@ const FEWEST_VALUES: u32 = 16;
 /// How many registers hold points; they come first, and each is written by a step but the first.
 fn points(code: &Code) -> u32 {
     let written = (code.instructions.iter())
-        .filter(|i| matches!(i.operation, Operation::Warp(_)))
+        .filter(|i| matches!(i.operation, Operation::Warp(_) | Operation::Put(_)))
         .map(|i| u32::from(i.out) / 3);
     written.max().unwrap_or(0) + 1
 }
@@ -119,6 +119,7 @@ impl Operations {
             Operation::Warp(_) if place == Registers::Memory => (point(i.out), 0, point(i.a)),
             Operation::Leaf(_) => (value(i.out), point(i.a), 0),
             Operation::Warp(_) => (point(i.out), point(i.a), 0),
+            Operation::Put(_) => (point(i.out), value(i.a), point(i.b)),
             Operation::Change(_) => (value(i.out), value(i.a), point(i.b)),
             Operation::Pair(_) => (value(i.out), value(i.a), value(i.b)),
             Operation::Mark(..) => (value(i.out), value(i.a), 0),
@@ -173,8 +174,11 @@ fn step(operations: &Operations, functions: &mut Functions, form: Form) -> Strin
         let (to, operands) = match operation {
             Operation::Leaf(_) => (values, format!("{points}[instruction.a]")),
             Operation::Warp(_) => (points, format!("{points}[instruction.a]")),
-            Operation::Change(_) => (
-                values,
+            Operation::Put(_) | Operation::Change(_) => (
+                match operation {
+                    Operation::Put(_) => points,
+                    _ => values,
+                },
                 format!("{values}[instruction.a], {points}[instruction.b]"),
             ),
             Operation::Pair(_) | Operation::Mark(..) => (
@@ -261,7 +265,7 @@ fn marks(operations: &Operations, functions: &mut Functions) -> String {
                 numbers[1].push(number);
                 continue;
             }
-            Operation::Warp(_) | Operation::Mark(..) => continue,
+            Operation::Warp(_) | Operation::Put(_) | Operation::Mark(..) => continue,
         };
         let _ = writeln!(
             cases,

@@ -155,6 +155,7 @@ fn step(operations: &Operations, functions: &mut Functions, form: Form) -> Strin
         let body = match operation {
             Operation::Leaf(_) => format!("d = {f}(p, instruction.at);"),
             Operation::Warp(_) => format!("q = {f}(p, instruction.at); moves = true;"),
+            Operation::Put(_) => format!("q = {f}(x, p, instruction.at); moves = true;"),
             Operation::Change(_) => format!("d = {f}(x, p, instruction.at);"),
             Operation::Pair(_) | Operation::Mark(..) => {
                 format!("d = {f}(x, y, instruction.at);")
@@ -218,7 +219,7 @@ fn marks_step(operations: &Operations, functions: &mut Functions) -> String {
             }
             // the marks of the value that is changed
             Operation::Change(_) | Operation::Mark(..) => {}
-            Operation::Warp(_) => {
+            Operation::Warp(_) | Operation::Put(_) => {
                 let _ = write!(warps, " || instruction.operation == {number}u");
             }
         }

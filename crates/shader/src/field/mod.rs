@@ -175,7 +175,7 @@ fn plain_marks(steps: &[Step]) -> Vec<Option<Plain>> {
         };
         all.push(match step.operation {
             Operation::Leaf(_) => (!has_traps(step.operation)).then(Plain::default),
-            Operation::Warp(_) => None,
+            Operation::Warp(_) | Operation::Put(_) => None,
             Operation::Change(_) => of(step.a),
             Operation::Pair(_) => of(step.a).filter(|a| of(step.b) == Some(*a)),
             Operation::Mark(kind, number) => of(step.a).map(|plain| plain.marked(kind, number)),

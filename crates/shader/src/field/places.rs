@@ -1,9 +1,10 @@
-//! Where points lie in the spaces of coats: a line for each map, whatever form the field has.
+//! Where points lie in the spaces of coats, with derivatives: as code, whatever form the field has.
 
+use super::compiled::Printer;
 use super::{Functions, Operand, steps};
-use crate::field::recorded::Form;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
+use zeroset_catalogue::tape::Operation;
 use zeroset_field::program::Structure;
 
 /// `field_place`; nothing where there are no coats.
@@ -13,34 +14,39 @@ pub(super) fn text(structure: &Structure, functions: &mut Functions) -> String {
         return String::new();
     }
     let (steps, _) = steps(&structure.places);
+    // a later step may take a register over, but not that of a space
     let written = structure.places.instructions.iter().map(|i| i.out);
     let step_of: BTreeMap<u16, usize> = written.zip(0..).collect();
     let mut cases = String::new();
     for (space, number) in spaces.iter().zip(1..) {
-        // the maps that lead there, the last first
-        let mut way = Vec::new();
-        let mut at = step_of.get(space).map(|i| Operand::Step(*i));
-        while let Some(Operand::Step(i)) = at {
-            way.push(i);
-            at = Some(steps[i].a);
-        }
-        // writing to a string cannot fail
-        let _ = writeln!(cases, "        case {number}u: {{");
-        let mut point = "p".to_owned();
-        for &i in way.iter().rev() {
-            let form = match steps[i].a {
-                Operand::Input => Form::PlainGradient,
-                Operand::Step(_) => Form::Gradient,
+        let last = step_of.get(space).map(|i| Operand::Step(*i));
+        let mut needed = BTreeSet::new();
+        let mut waiting: Vec<Operand> = last.into_iter().collect();
+        while let Some(operand) = waiting.pop() {
+            let Operand::Step(i) = operand else {
+                continue;
             };
-            let map = functions.name(steps[i].operation, form);
-            let _ = writeln!(
-                cases,
-                "            let p{i} = {map}({point}, {}u);",
-                steps[i].at
-            );
-            point = format!("p{i}");
+            if !needed.insert(i) {
+                continue;
+            }
+            waiting.push(steps[i].a);
+            if let Operation::Put(_) | Operation::Change(_) | Operation::Pair(_) =
+                steps[i].operation
+            {
+                waiting.push(steps[i].b);
+            }
         }
-        let _ = writeln!(cases, "            return {point};\n        }}");
+        let mut printer = Printer::of(&steps);
+        for i in needed {
+            printer.value(functions, i, true);
+        }
+        let point = printer.name(last.unwrap_or(Operand::Input));
+        // writing to a string cannot fail
+        let _ = writeln!(
+            cases,
+            "        case {number}u: {{\n{}            return {point};\n        }}",
+            printer.out
+        );
     }
     format!(
         "fn field_place(number: u32, p: vec3f) -> mat3x4f {{

@@ -4,7 +4,7 @@
 
 use zeroset_catalogue::op::*;
 use zeroset_catalogue::tape::Operation;
-use zeroset_catalogue::{each_change, each_leaf, each_pair, each_warp};
+use zeroset_catalogue::{each_change, each_leaf, each_pair, each_put, each_warp};
 use zeroset_number::{Args, Argument, Dual, Expr, Function, Ops, Real, Recorder};
 
 /// What a recorded function takes and gives. All take `at` last: where the operation's parameters begin.
@@ -13,8 +13,8 @@ use zeroset_number::{Args, Argument, Dual, Expr, Function, Ops, Real, Recorder};
 /// derivatives is three of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Form {
-    /// Values: a point `p` to a number (leaf) or a point (warp), a number `d` and a point `p` to a number (change), two
-    /// numbers `x` and `y` to a number (pair).
+    /// Values: a point `p` to a number (leaf) or a point (warp), a number `d` and a point `p` to a point (put) or a number
+    /// (change), two numbers `x` and `y` to a number (pair).
     Value,
     /// As [`Form::Value`], for numbers with their gradients and points with their derivatives.
     Gradient,
@@ -54,6 +54,7 @@ pub fn operations() -> impl Iterator<Item = Operation> {
     let codes = |n: usize| (0..n).map(|code| code as u16);
     (codes(LEAVES.len()).map(Operation::Leaf))
         .chain(codes(WARPS.len()).map(Operation::Warp))
+        .chain(codes(PUTS.len()).map(Operation::Put))
         .chain(codes(CHANGES.len()).map(Operation::Change))
         .chain(codes(PAIRS.len()).map(Operation::Pair))
 }
@@ -64,6 +65,7 @@ pub fn name(operation: Operation, form: Form) -> Option<String> {
     let kind = match operation {
         Operation::Leaf(_) => "leaf",
         Operation::Warp(_) => "warp",
+        Operation::Put(_) => "put",
         Operation::Change(_) => "change",
         Operation::Pair(_) => "pair",
         Operation::Mark(..) => return None,
@@ -121,22 +123,33 @@ fn warp<E: Warp>(r: &Recorder, form: Form) -> Option<Recording<'_>> {
     })
 }
 
+fn put<E: Put>(r: &Recorder, form: Form) -> Option<Recording<'_>> {
+    Some(match form {
+        Form::Value => {
+            let q = E::put(r.input("d"), r.point("p"));
+            (VALUE_AND_POINT, q.array().to_vec())
+        }
+        Form::Gradient | Form::PlainGradient => {
+            let (arguments, p) = match form {
+                Form::Gradient => (DUAL_AND_DUAL_POINT, r.dual_point("p")),
+                _ => (DUAL_AND_POINT, Dual::point(r.point("p"))),
+            };
+            (arguments, flat(E::put(r.dual("d"), p).array()))
+        }
+        Form::Share | Form::Traps => return None,
+    })
+}
+
 fn change<E: Change>(r: &Recorder, form: Form) -> Option<Recording<'_>> {
     Some(match form {
         Form::Value => {
             let d = E::change(r.input("d"), r.point("p"), Args::new(&r));
-            (&[("d", Argument::Number), ("p", Argument::Vec3)], vec![d])
+            (VALUE_AND_POINT, vec![d])
         }
         Form::Gradient | Form::PlainGradient => {
-            let (arguments, p): (Arguments, _) = match form {
-                Form::Gradient => (
-                    &[("d", Argument::Vec4), ("p", Argument::Mat3x4)],
-                    r.dual_point("p"),
-                ),
-                _ => (
-                    &[("d", Argument::Vec4), ("p", Argument::Vec3)],
-                    Dual::point(r.point("p")),
-                ),
+            let (arguments, p) = match form {
+                Form::Gradient => (DUAL_AND_DUAL_POINT, r.dual_point("p")),
+                _ => (DUAL_AND_POINT, Dual::point(r.point("p"))),
             };
             (arguments, flat([E::change(r.dual("d"), p, Args::new(&r))]))
         }
@@ -175,6 +188,9 @@ fn pair<E: Pair>(r: &Recorder, form: Form) -> Option<Recording<'_>> {
 }
 
 const POINT: Arguments = &[("p", Argument::Vec3)];
+const VALUE_AND_POINT: Arguments = &[("d", Argument::Number), ("p", Argument::Vec3)];
+const DUAL_AND_POINT: Arguments = &[("d", Argument::Vec4), ("p", Argument::Vec3)];
+const DUAL_AND_DUAL_POINT: Arguments = &[("d", Argument::Vec4), ("p", Argument::Mat3x4)];
 const DUAL_POINT: Arguments = &[("p", Argument::Mat3x4)];
 
 /// Values and derivatives, one number behind the other.
@@ -208,6 +224,7 @@ fn entry(operation: Operation) -> Option<&'static Entry> {
     match operation {
         Operation::Leaf(code) => LEAVES.get(usize::from(code)),
         Operation::Warp(code) => WARPS.get(usize::from(code)),
+        Operation::Put(code) => PUTS.get(usize::from(code)),
         Operation::Change(code) => CHANGES.get(usize::from(code)),
         Operation::Pair(code) => PAIRS.get(usize::from(code)),
         Operation::Mark(..) => None,
@@ -221,6 +238,7 @@ macro_rules! entries {
 }
 const LEAVES: &[Entry] = each_leaf!(entries leaf);
 const WARPS: &[Entry] = each_warp!(entries warp);
+const PUTS: &[Entry] = each_put!(entries put);
 const CHANGES: &[Entry] = each_change!(entries change);
 const PAIRS: &[Entry] = each_pair!(entries pair);
 

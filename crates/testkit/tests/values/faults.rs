@@ -187,7 +187,7 @@ fn faults_in_scenes_are_noticed() {
 
 /// What is wrong, in the text of which shader how, and the check that must notice. Formulas are recorded from those of the CPU:
 /// these faults are in how shaders call them, or in their numbers.
-const IN_SHADERS: [(&str, &str, &str, &str); 41] = [
+const IN_SHADERS: [(&str, &str, &str, &str); 48] = [
     (
         "a closest place behind the second sample",
         "closest_shadow(f, z, r, t, sharpness)",

@@ -13,7 +13,7 @@ style = choice(\"style\", [\"round\", \"sharp\"])
 floor = toggle(\"floor\", True)
 tint = color(\"tint\", \"#e8b04a\")
 ball = sphere(0.8) if style == \"round\" else box(1.2)
-show(ball - sphere(0.4).move(x = 1 - bite, y = 0.1 * sin(360 * time())), tint, name = \"fruit\")
+show(ball - sphere(0.4).move(x = 1 - bite, y = 0.1 * sin(tau * time())), tint, name = \"fruit\")
 if floor:
     show(plane().move(y = -0.8))
 render(size = (320, 240), aa = none())

@@ -283,7 +283,9 @@ fn of_scene(
         time: args.time,
         limit: args.limit.clone(),
     };
-    let options = crate::scene::options(&scene, None)?;
+    let mut options = crate::scene::options(&scene, None)?;
+    // the solid, not the floor that a picture of it would have
+    options.bare = true;
     let loaded = crate::scene::loaded(&scene, &options, console)?.scene;
     let invalid = |error: String| Failure::new(Exit::Scene, error);
     let field = loaded.field().map_err(|e| invalid(e.to_string()))?;

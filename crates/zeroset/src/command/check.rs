@@ -191,7 +191,9 @@ fn unproven(field: &Field) -> Vec<String> {
             Node::Primitive { entry, .. } => {
                 found.insert(format!("{}: a distance estimator", entry.info.name))
             }
-            Node::Formula(_) => found.insert("a formula whose slope is stated by hand".to_owned()),
+            Node::Formula(formula) if !formula.is_proven() => {
+                found.insert("a formula whose slope is stated by hand".to_owned())
+            }
             // what is above an estimate is one too; an operation that makes an estimate of a proven field is named
             Node::Map { entry, shape, .. } if is_proven(shape) => {
                 found.insert(entry.info.name.to_owned())

@@ -53,7 +53,8 @@ fn listing(entries: &[Entry]) -> String {
     for group in groups {
         let _ = writeln!(out, "{}{group}", if out.is_empty() { "" } else { "\n" });
         for entry in entries.iter().filter(|e| e.group == group) {
-            let dot = if matches!(entry.kind, "map" | "modifier" | "method") {
+            let is_method = entry.kind.starts_with("method");
+            let dot = if is_method || matches!(entry.kind, "map" | "modifier") {
                 "."
             } else {
                 ""

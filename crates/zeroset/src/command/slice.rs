@@ -21,7 +21,9 @@ const UNBOUNDED: f64 = 2.0;
 
 /// Draws a section.
 pub(crate) fn run(args: &SliceArgs, console: &Console) -> Result<(), Failure> {
-    let options = crate::scene::options(&args.scene, Some(args.size.0))?;
+    let mut options = crate::scene::options(&args.scene, Some(args.size.0))?;
+    // the solid, not the floor that a picture of it would have
+    options.bare = true;
     let scene = crate::scene::loaded(&args.scene, &options, console)?.scene;
     let path = match &args.output {
         Some(path) => path.clone(),

@@ -93,6 +93,8 @@ fn parameters(operation: Operation) -> Vec<Vec<f32>> {
             Some(e) => (vec![], &e.info, e.samples),
             None => return own_parameters(),
         },
+        // a put has no parameters
+        Operation::Put(_) => return own_parameters(),
         Operation::Mark(..) => return vec![],
     };
     let defaults = (info.params.iter().all(|p| !p.default.is_empty())).then(|| info.defaults());
@@ -160,10 +162,9 @@ impl Noise {
 /// The operation by the evaluator, on three numbers: they are the point; the first is the value of a change, the first two
 /// are the values of a pair.
 fn evaluate(operation: Operation, params: &[f32], p: Vec3<Dual<f32>>) -> Vec<Dual<f32>> {
-    let results = if let Operation::Warp(_) = operation {
-        3
-    } else {
-        1
+    let results = match operation {
+        Operation::Warp(_) | Operation::Put(_) => 3,
+        _ => 1,
     };
     let b = u16::from(matches!(operation, Operation::Pair(_)));
     let instruction = Instruction {
@@ -223,7 +224,7 @@ fn case(
     };
     let mut arguments = match operation {
         Operation::Leaf(_) | Operation::Warp(_) => vec![point],
-        Operation::Change(_) => vec![number(p.x), point],
+        Operation::Put(_) | Operation::Change(_) => vec![number(p.x), point],
         Operation::Pair(_) | Operation::Mark(..) => vec![number(p.x), number(p.y)],
     };
     arguments.push(Value::Count(AT as u32));
