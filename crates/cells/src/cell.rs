@@ -115,9 +115,25 @@ impl Cell {
         parts[bit(0) | bit(1) | bit(2)].cell.get()?.as_deref()
     }
 
-    /// Whether it is not cut, now or later.
-    pub(crate) fn is_last(&self) -> bool {
-        self.parts.is_none()
+    /// Whether the part around a point of it is not made yet, and not to be made after `points` points, so that it is the cell of this
+    /// point too.
+    #[inline]
+    pub(crate) fn stays(&self, p: [f32; 3], points: u32) -> bool {
+        let Some(parts) = self.parts.as_ref() else {
+            return true;
+        };
+        let part = &parts[self.number(p)];
+        match part.cell.get() {
+            Some(made) => made.is_none(),
+            None => part.asked.fetch_add(1, Ordering::Relaxed) < points,
+        }
+    }
+
+    /// Which part a point lies in.
+    #[inline(always)]
+    fn number(&self, p: [f32; 3]) -> usize {
+        let bit = |k: usize| usize::from(p[k] >= self.centre[k]) << k;
+        bit(0) | bit(1) | bit(2)
     }
 
     /// The part around a point of it; `make` makes it where nobody has yet, and as many points were looked for as it takes.
@@ -129,8 +145,7 @@ impl Cell {
         make: impl FnOnce(&Cell, usize) -> Option<Cell>,
     ) -> Option<&Cell> {
         let parts = self.parts.as_ref()?;
-        let bit = |k: usize| usize::from(p[k] >= self.centre[k]) << k;
-        let number = bit(0) | bit(1) | bit(2);
+        let number = self.number(p);
         let part = &parts[number];
         if let Some(made) = part.cell.get() {
             return made.as_deref();

@@ -31,7 +31,7 @@ impl<'c> Groups<'c> {
             let p = [points[0].0[i], points[1].0[i], points[2].0[i]];
             // neighbours mostly lie in one cell
             let group = match last {
-                Some((cell, group)) if cell.is_last() && cell.holds(p) => group,
+                Some((cell, group)) if cell.holds(p) && cell.stays(p, cells.points()) => group,
                 _ => {
                     let cell = cells.find(p, side);
                     let code = match side {

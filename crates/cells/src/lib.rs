@@ -18,12 +18,12 @@
 //! use zeroset_field::shape::sphere;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! let beads = (0..100).map(|k| sphere(0.4).translate([f64::from(k), 0.0, 0.0]));
+//! let beads = (0..400).map(|k| sphere(0.4).translate([f64::from(k), 0.0, 0.0]));
 //! let chain = beads.reduce(|a, b| a | b).ok_or("no beads")?;
 //! let program = Program::compile(&chain.field()?, &Limits::default())?;
 //! let cells = Cells::new(&program, program.bounds()).ok_or("a small program")?.eager();
 //!
-//! assert_eq!(program.values().code.instructions.len(), 199);
+//! assert_eq!(program.values().code.instructions.len(), 799);
 //! // near the fourth bead a few are left
 //! assert!(cells.tape_at([3.0, 0.5, 0.0]).code.instructions.len() < 10);
 //! # Ok(())
@@ -48,7 +48,7 @@ use zeroset_eval::{BATCH, Lane, Marks, Workspace};
 use zeroset_field::program::Program;
 
 /// Programs of fewer instructions have no cells: sorting points costs as much as it saves (docs/performance.md, "Cells").
-pub const LEAST_INSTRUCTIONS: usize = 128;
+pub const LEAST_INSTRUCTIONS: usize = 512;
 
 /// Bytes that the cells of a program may take, apart from what they are made of at least: 256 MiB. Where there are as many, none are made
 /// any more.
@@ -83,7 +83,7 @@ pub struct Cells {
     count: AtomicUsize,
     bytes: AtomicUsize,
     instructions: AtomicU64,
-    points: AtomicU64,
+    evaluated: AtomicU64,
 }
 
 /// How cells are cut.
@@ -178,7 +178,7 @@ impl Cells {
             cut,
             count: AtomicUsize::new(1),
             instructions: AtomicU64::new(0),
-            points: AtomicU64::new(0),
+            evaluated: AtomicU64::new(0),
         })
     }
 
@@ -188,13 +188,18 @@ impl Cells {
         self
     }
 
+    /// Points that are looked for in a part of a cell before it is made.
+    fn points(&self) -> u32 {
+        self.cut.points
+    }
+
     /// What they have cost so far.
     pub fn census(&self) -> Census {
         Census {
             cells: self.count.load(Ordering::Relaxed),
             bytes: self.bytes.load(Ordering::Relaxed),
             instructions: self.instructions.load(Ordering::Relaxed),
-            points: self.points.load(Ordering::Relaxed),
+            points: self.evaluated.load(Ordering::Relaxed),
         }
     }
 
@@ -361,7 +366,7 @@ impl Cells {
     fn count(&self, instructions: usize, points: usize) {
         let all = instructions as u64;
         self.instructions.fetch_add(all, Ordering::Relaxed);
-        self.points.fetch_add(points as u64, Ordering::Relaxed);
+        self.evaluated.fetch_add(points as u64, Ordering::Relaxed);
     }
 }
 

@@ -463,7 +463,7 @@ fn a_tape_of_another_place_is_noticed() {
 #[test]
 fn a_small_budget_is_kept() {
     let mut r = Random(0x5eed_1006);
-    let parts: Vec<Field> = (0..100)
+    let parts: Vec<Field> = (0..300)
         .map(|_| {
             let at = r.point(3.0);
             let scaled = solid(&mut r).place(Placement::scaled(0.3)).unwrap();
