@@ -129,6 +129,15 @@ impl Cell {
         }
     }
 
+    /// The part that holds a box, from its smallest to its largest corner, if there is one and somebody has made it.
+    pub(crate) fn part_around(&self, min: [f32; 3], max: [f32; 3]) -> Option<&Cell> {
+        let (parts, number) = (self.parts.as_ref()?, self.number(min));
+        if self.number(max) != number {
+            return None;
+        }
+        parts[number].cell.get()?.as_deref()
+    }
+
     /// Which part a point lies in.
     #[inline(always)]
     fn number(&self, p: [f32; 3]) -> usize {

@@ -347,6 +347,31 @@ impl Cells {
         cell
     }
 
+    /// A tape for all of the first `n` points.
+    fn around(&self, side: Side, points: &[Lane; 3], n: usize) -> &Code {
+        let structure = self.program.structure();
+        if side == Side::Marks {
+            return &structure.marks;
+        }
+        let (mut min, mut max) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+        for k in 0..3 {
+            for &x in &points[k].0[..n] {
+                if !x.is_finite() {
+                    return &structure.values;
+                }
+                (min[k], max[k]) = (min[k].min(x), max[k].max(x));
+            }
+        }
+        if !(self.root.holds(min) && self.root.holds(max)) {
+            return &structure.values;
+        }
+        let mut cell = &self.root;
+        while let Some(part) = cell.part_around(min, max) {
+            cell = part;
+        }
+        cell.values()
+    }
+
     /// A part of a cell, if it has any and there is room for one.
     fn make(&self, cell: &Cell, part: usize) -> Option<Cell> {
         if self.bytes.load(Ordering::Relaxed) > self.cut.budget {
