@@ -121,7 +121,7 @@ fn assert_same(a: &Film, b: &Film) {
 #[test]
 fn pictures_with_cells_have_the_same_bits() {
     let scene = beads();
-    let with = prepared(&scene, 2);
+    let with = prepared(&scene, 2).with_cells();
     let cells = with.cells().expect("a program with cells");
     let (_, film) = picture(&with);
     let census = cells.census();
@@ -131,8 +131,8 @@ fn pictures_with_cells_have_the_same_bits() {
     assert!(census.cells > 100 && census.bytes < 16 << 20, "{census:?}");
     // the second picture finds all cells there
     assert_same(&film, &picture(&with).1);
-    assert_same(&film, &picture(&prepared(&scene, 1)).1);
-    assert_same(&film, &picture(&prepared(&scene, 2).without_cells()).1);
+    assert_same(&film, &picture(&prepared(&scene, 1).with_cells()).1);
+    assert_same(&film, &picture(&prepared(&scene, 2)).1);
 }
 
 #[test]
