@@ -170,12 +170,11 @@ impl Cell {
     pub(crate) fn part(&self, part: usize, data: &Data, cut: &Cut) -> Cell {
         let (mut min, mut max) = (self.min, self.max);
         for k in 0..3 {
-            let half = if part >> k & 1 == 1 {
-                &mut min
+            if part >> k & 1 == 1 {
+                min[k] = self.centre[k];
             } else {
-                &mut max
-            };
-            half[k] = self.centre[k];
+                max[k] = self.centre[k];
+            }
         }
         let side = max[0] - min[0];
         let margin = if cut.slopes { MARGIN * side } else { 0.0 };
