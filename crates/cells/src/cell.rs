@@ -1,6 +1,7 @@
 //! One cell: a box with its tapes, and its eight parts as soon as somebody looks there.
 
 use crate::Cut;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, OnceLock};
 use zeroset_catalogue::tape::{Code, Instruction, Tape};
 use zeroset_eval::{Point, Pruner};
@@ -41,11 +42,20 @@ pub(crate) struct Cell {
     free: f32,
     /// Cuts that have not made the tape shorter, nor the slope less.
     vain: u8,
-    /// None in a cell that is not cut. The inner one is none where there was no room for the part when it was first asked for.
+    /// None in a cell that is not cut.
     parts: Option<Box<Parts>>,
 }
 
-type Parts = [OnceLock<Option<Box<Cell>>>; 8];
+type Parts = [Part; 8];
+
+/// An eighth of a cell.
+#[derive(Default)]
+struct Part {
+    /// Points that were looked for in it before it was made.
+    asked: AtomicU32,
+    /// None where there was no room for it when it was to be made.
+    cell: OnceLock<Option<Box<Cell>>>,
+}
 
 /// Bytes of a cell without its tapes, at most.
 pub(crate) const LARGEST: usize = size_of::<Cell>() + size_of::<Parts>();
@@ -102,20 +112,57 @@ impl Cell {
     pub(crate) fn part_near(&self, p: [f64; 3]) -> Option<&Cell> {
         let parts = self.parts.as_ref()?;
         let bit = |k: usize| usize::from(p[k] >= f64::from(self.centre[k])) << k;
-        parts[bit(0) | bit(1) | bit(2)].get()?.as_deref()
+        parts[bit(0) | bit(1) | bit(2)].cell.get()?.as_deref()
     }
 
-    /// The part around a point of it; `make` makes it where nobody has yet.
+    /// Whether the part around a point of it is not made yet, and not to be made after `points` points, so that it is the cell of this
+    /// point too.
+    #[inline]
+    pub(crate) fn stays(&self, p: [f32; 3], points: u32) -> bool {
+        let Some(parts) = self.parts.as_ref() else {
+            return true;
+        };
+        let part = &parts[self.number(p)];
+        match part.cell.get() {
+            Some(made) => made.is_none(),
+            None => part.asked.fetch_add(1, Ordering::Relaxed) < points,
+        }
+    }
+
+    /// The part that holds a box, from its smallest to its largest corner, if there is one and somebody has made it.
+    pub(crate) fn part_around(&self, min: [f32; 3], max: [f32; 3]) -> Option<&Cell> {
+        let (parts, number) = (self.parts.as_ref()?, self.number(min));
+        if self.number(max) != number {
+            return None;
+        }
+        parts[number].cell.get()?.as_deref()
+    }
+
+    /// Which part a point lies in.
+    #[inline(always)]
+    fn number(&self, p: [f32; 3]) -> usize {
+        let bit = |k: usize| usize::from(p[k] >= self.centre[k]) << k;
+        bit(0) | bit(1) | bit(2)
+    }
+
+    /// The part around a point of it; `make` makes it where nobody has yet, and as many points were looked for as it takes.
     #[inline]
     pub(crate) fn child(
         &self,
         p: [f32; 3],
+        points: u32,
         make: impl FnOnce(&Cell, usize) -> Option<Cell>,
     ) -> Option<&Cell> {
         let parts = self.parts.as_ref()?;
-        let bit = |k: usize| usize::from(p[k] >= self.centre[k]) << k;
-        let part = bit(0) | bit(1) | bit(2);
-        let made = parts[part].get_or_init(|| make(self, part).map(Box::new));
+        let number = self.number(p);
+        let part = &parts[number];
+        if let Some(made) = part.cell.get() {
+            return made.as_deref();
+        }
+        if part.asked.fetch_add(1, Ordering::Relaxed) < points {
+            return None;
+        }
+        let made = part.cell.get_or_init(|| make(self, number).map(Box::new));
         made.as_deref()
     }
 
@@ -123,12 +170,11 @@ impl Cell {
     pub(crate) fn part(&self, part: usize, data: &Data, cut: &Cut) -> Cell {
         let (mut min, mut max) = (self.min, self.max);
         for k in 0..3 {
-            let half = if part >> k & 1 == 1 {
-                &mut min
+            if part >> k & 1 == 1 {
+                min[k] = self.centre[k];
             } else {
-                &mut max
-            };
-            half[k] = self.centre[k];
+                max[k] = self.centre[k];
+            }
         }
         let side = max[0] - min[0];
         let margin = if cut.slopes { MARGIN * side } else { 0.0 };

@@ -31,7 +31,7 @@ impl<'c> Groups<'c> {
             let p = [points[0].0[i], points[1].0[i], points[2].0[i]];
             // neighbours mostly lie in one cell
             let group = match last {
-                Some((cell, group)) if cell.holds(p) => group,
+                Some((cell, group)) if cell.holds(p) && cell.stays(p, cells.points()) => group,
                 _ => {
                     let cell = cells.find(p, side);
                     let code = match side {
@@ -46,13 +46,25 @@ impl<'c> Groups<'c> {
             of[i] = group;
             sizes[usize::from(group)] += 1;
         }
-        let (mut ends, mut end, mut instructions) = ([0_u8; BATCH], 0, 0);
+        let (mut ends, mut end, mut instructions, mut all) = ([0_u8; BATCH], 0, 0, 0);
         for (k, (tape, size)) in groups.tapes.iter_mut().zip(sizes).enumerate() {
             let Some((code, last)) = tape else { break };
             ends[k] = end;
             end += size;
             *last = end;
             instructions += code.instructions.len() * usize::from(size);
+            all += cost(code, usize::from(size));
+        }
+        // many tapes for a few points each take longer than one for all
+        if groups.count > 1 {
+            let code = cells.around(side, points, n.min(BATCH));
+            if cost(code, n) <= all {
+                groups.tapes = [None; BATCH];
+                groups.tapes[0] = Some((code, 0));
+                groups.count = 1;
+                cells.count(code.instructions.len() * n, n);
+                return groups;
+            }
         }
         for i in 0..n.min(BATCH) {
             let at = &mut ends[usize::from(of[i])];
@@ -95,6 +107,16 @@ impl<'c> Groups<'c> {
                 (*code, members)
             })
     }
+}
+
+/// Points of a vector, about.
+const VECTOR: usize = 8;
+/// Vectors that take as long as finding and calling what an instruction does.
+const CALL: usize = 3;
+
+/// What it takes to evaluate a tape at some points, in vectors of an instruction.
+fn cost(code: &Code, points: usize) -> usize {
+    code.instructions.len() * (CALL + points.div_ceil(VECTOR))
 }
 
 /// Puts the points of a group first in the workspace.

@@ -1,8 +1,8 @@
 //! Cells: boxes of space, each with what is left of a program in it (Keeter 2020; Barbier et al. 2025).
 //!
 //! [`Cells`] is a tree over a cube around the solid. A cell has the tape that says all there is to say in it, made from its parent's by one
-//! evaluation over its box ([`zeroset_eval::Pruner`]), so that the cost of a point depends on what is near it. Cells are made where somebody
-//! looks, once, whatever thread comes first; which ones there are says nothing but how fast it goes, because **a cell's tape gives the
+//! evaluation over its box ([`zeroset_eval::Pruner`]), so that the cost of a point depends on what is near it. Cells are made where many
+//! look, once, whatever thread comes first; which ones there are says nothing but how fast it goes, because **a cell's tape gives the
 //! same bits as the whole program**: values, gradients, marks.
 //!
 //! Where a program divides by a large Lipschitz constant, because a formula is steep somewhere, cells know more: how much its value changes
@@ -18,12 +18,12 @@
 //! use zeroset_field::shape::sphere;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! let beads = (0..100).map(|k| sphere(0.4).translate([f64::from(k), 0.0, 0.0]));
+//! let beads = (0..400).map(|k| sphere(0.4).translate([f64::from(k), 0.0, 0.0]));
 //! let chain = beads.reduce(|a, b| a | b).ok_or("no beads")?;
 //! let program = Program::compile(&chain.field()?, &Limits::default())?;
-//! let cells = Cells::new(&program, program.bounds()).ok_or("a small program")?;
+//! let cells = Cells::new(&program, program.bounds()).ok_or("a small program")?.eager();
 //!
-//! assert_eq!(program.values().code.instructions.len(), 199);
+//! assert_eq!(program.values().code.instructions.len(), 799);
 //! // near the fourth bead a few are left
 //! assert!(cells.tape_at([3.0, 0.5, 0.0]).code.instructions.len() < 10);
 //! # Ok(())
@@ -48,7 +48,7 @@ use zeroset_eval::{BATCH, Lane, Marks, Workspace};
 use zeroset_field::program::Program;
 
 /// Programs of fewer instructions have no cells: sorting points costs as much as it saves (docs/performance.md, "Cells").
-pub const LEAST_INSTRUCTIONS: usize = 48;
+pub const LEAST_INSTRUCTIONS: usize = 512;
 
 /// Bytes that the cells of a program may take, apart from what they are made of at least: 256 MiB. Where there are as many, none are made
 /// any more.
@@ -62,6 +62,9 @@ const REACH_OF_SLOPES: f32 = 1.25;
 /// Cells with slopes are cut so often at most, and less often where the budget would not hold all that there can be: how far a ray goes
 /// must not depend on which cells were made first.
 const MOST_CUTS: u32 = 5;
+
+/// A part of a cell is made when so many points were looked for in it: to make it costs as much as some tens of evaluations.
+const POINTS: u32 = 256;
 
 /// How far cells go beyond what they are made around, in its sizes.
 const REACH: f32 = 64.0;
@@ -80,7 +83,7 @@ pub struct Cells {
     count: AtomicUsize,
     bytes: AtomicUsize,
     instructions: AtomicU64,
-    points: AtomicU64,
+    evaluated: AtomicU64,
 }
 
 /// How cells are cut.
@@ -92,6 +95,8 @@ struct Cut {
     finest: f32,
     /// Bytes that all cells may take.
     budget: usize,
+    /// Points that are looked for in a part of a cell before it is made.
+    points: u32,
     /// Whether cells have slopes.
     slopes: bool,
 }
@@ -150,6 +155,8 @@ impl Cells {
                 // a hair more, for the rounding of halves
                 finest: 2.0 * reach * 1.001 / (1_u32 << cuts) as f32,
                 budget: usize::MAX,
+                // how far a ray goes must not depend on who was there before
+                points: 0,
                 slopes,
             }
         } else {
@@ -157,6 +164,7 @@ impl Cells {
                 coarse: size * COARSE,
                 finest: 2.0 * size * FINEST,
                 budget,
+                points: POINTS,
                 slopes,
             }
         };
@@ -170,8 +178,19 @@ impl Cells {
             cut,
             count: AtomicUsize::new(1),
             instructions: AtomicU64::new(0),
-            points: AtomicU64::new(0),
+            evaluated: AtomicU64::new(0),
         })
+    }
+
+    /// Cells that are made at the first point that is looked for in them, and not where many are.
+    pub fn eager(mut self) -> Cells {
+        self.cut.points = 0;
+        self
+    }
+
+    /// Points that are looked for in a part of a cell before it is made.
+    fn points(&self) -> u32 {
+        self.cut.points
     }
 
     /// What they have cost so far.
@@ -180,7 +199,7 @@ impl Cells {
             cells: self.count.load(Ordering::Relaxed),
             bytes: self.bytes.load(Ordering::Relaxed),
             instructions: self.instructions.load(Ordering::Relaxed),
-            points: self.points.load(Ordering::Relaxed),
+            points: self.evaluated.load(Ordering::Relaxed),
         }
     }
 
@@ -319,13 +338,38 @@ impl Cells {
             return &self.beyond;
         }
         let mut cell = &self.root;
-        while let Some(child) = cell.child(p, |cell, part| self.make(cell, part)) {
+        while let Some(child) = cell.child(p, self.cut.points, |cell, part| self.make(cell, part)) {
             if side == Side::Marks {
                 child.prune_marks(cell, self.program.data(), |bytes| self.pay(bytes));
             }
             cell = child;
         }
         cell
+    }
+
+    /// A tape for all of the first `n` points.
+    fn around(&self, side: Side, points: &[Lane; 3], n: usize) -> &Code {
+        let structure = self.program.structure();
+        if side == Side::Marks {
+            return &structure.marks;
+        }
+        let (mut min, mut max) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+        for k in 0..3 {
+            for &x in &points[k].0[..n] {
+                if !x.is_finite() {
+                    return &structure.values;
+                }
+                (min[k], max[k]) = (min[k].min(x), max[k].max(x));
+            }
+        }
+        if !(self.root.holds(min) && self.root.holds(max)) {
+            return &structure.values;
+        }
+        let mut cell = &self.root;
+        while let Some(part) = cell.part_around(min, max) {
+            cell = part;
+        }
+        cell.values()
     }
 
     /// A part of a cell, if it has any and there is room for one.
@@ -347,7 +391,7 @@ impl Cells {
     fn count(&self, instructions: usize, points: usize) {
         let all = instructions as u64;
         self.instructions.fetch_add(all, Ordering::Relaxed);
-        self.points.fetch_add(points as u64, Ordering::Relaxed);
+        self.evaluated.fetch_add(points as u64, Ordering::Relaxed);
     }
 }
 

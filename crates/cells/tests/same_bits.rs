@@ -334,7 +334,9 @@ fn polar_copies() {
 #[test]
 fn every_scene() {
     let mut r = Random(0x5eed_1004);
-    for path in scenes::all() {
+    // those of the benchmark are long enough to have cells
+    let long = ["bench/temple.star", "bench/facade.star"].map(|name| scenes::folder().join(name));
+    for path in scenes::all().into_iter().chain(long) {
         let scene = load(&path, &Options::default())
             .unwrap_or_else(|e| panic!("{e}"))
             .scene;
@@ -363,7 +365,7 @@ fn every_scene() {
         } else {
             finite
         };
-        let Some(cells) = Cells::new(&program, around) else {
+        let Some(cells) = Cells::new(&program, around).map(Cells::eager) else {
             continue;
         };
         for case in 0..if heavy { 6 } else { 20 } {
@@ -461,7 +463,7 @@ fn a_tape_of_another_place_is_noticed() {
 #[test]
 fn a_small_budget_is_kept() {
     let mut r = Random(0x5eed_1006);
-    let parts: Vec<Field> = (0..60)
+    let parts: Vec<Field> = (0..300)
         .map(|_| {
             let at = r.point(3.0);
             let scaled = solid(&mut r).place(Placement::scaled(0.3)).unwrap();
@@ -472,8 +474,10 @@ fn a_small_budget_is_kept() {
     let program = compiled(&Field::join(union, Vec::new(), parts).unwrap());
     let around = Aabb::centred([3.5; 3]);
     let budget = 60_000;
-    let few = Cells::within(&program, around, budget).expect("cells");
-    let many = Cells::new(&program, around).expect("cells");
+    let few = Cells::within(&program, around, budget)
+        .expect("cells")
+        .eager();
+    let many = Cells::new(&program, around).expect("cells").eager();
     for _ in 0..40 {
         let points = Box3::random(&mut r, 4.0).points(&mut r);
         let level = Level::new();

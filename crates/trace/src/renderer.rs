@@ -293,6 +293,13 @@ impl PreparedScene {
         self.cells.as_deref()
     }
 
+    /// The scene with cells that make tapes shorter, where it has instructions enough for them: the same picture, to the bit. They are not
+    /// there by default, because sorting points by cells takes as long as shorter tapes save (docs/performance.md, "Cells").
+    pub fn with_cells(self) -> PreparedScene {
+        let cells = Cells::new(&self.program, around(&self.scene)).map(Arc::new);
+        PreparedScene { cells, ..self }
+    }
+
     /// The scene without cells: the same picture, slower or, where they were not worth while, as fast.
     pub fn without_cells(self) -> PreparedScene {
         PreparedScene {
@@ -436,13 +443,19 @@ impl Prepared for PreparedScene {
     }
 }
 
-/// The cells of a scene's program, around all objects that have an end.
+/// The cells of a scene's program, where it is steep: others do not pay yet, see [`PreparedScene::with_cells`].
 fn cells_of(scene: &Scene, program: &Program) -> Option<Arc<Cells>> {
+    Cells::new(program, around(scene))
+        .filter(Cells::has_slopes)
+        .map(Arc::new)
+}
+
+/// A box around all objects that have an end.
+fn around(scene: &Scene) -> Aabb {
     let boxes = scene.objects().iter().map(|o| o.field.facts().bounds);
-    let around = boxes
+    boxes
         .filter(|b| b.is_finite() && !b.is_empty())
-        .fold(Aabb::EMPTY, |all, b| all.hull(&b));
-    Cells::new(program, around).map(Arc::new)
+        .fold(Aabb::EMPTY, |all, b| all.hull(&b))
 }
 
 /// Rows of sums that tiles beside each other add to.

@@ -1,8 +1,6 @@
 //! Sections: a field on a plane across an axis.
 
 use fearless_simd::Level;
-use zeroset_catalogue::bounds::Aabb;
-use zeroset_cells::Cells;
 use zeroset_eval::{BATCH, Workspace, gradients};
 use zeroset_field::program::Program;
 use zeroset_output::view::section::Section;
@@ -45,15 +43,6 @@ impl SectionPlane {
         point
     }
 
-    /// A box around the picture, a pixel thick.
-    fn around(&self, size: [u32; 2]) -> Aabb {
-        let [width, height] = size.map(f64::from);
-        let corners = [self.point(0.0, 0.0, size), self.point(width, height, size)];
-        let mut around = Aabb::new(corners[0], corners[0]);
-        around = around.hull(&Aabb::new(corners[1], corners[1]));
-        around.grow(0.5 * self.pixel)
-    }
-
     /// Samples the distance to the surface of a field on the plane, as it is shown. The caller has checked the size against its limits.
     pub fn sample(&self, program: &Program, size: [u32; 2]) -> Section {
         let [width, height] = size;
@@ -61,7 +50,6 @@ impl SectionPlane {
         let (mut values, mut slopes) = (Vec::with_capacity(count), Vec::with_capacity(count));
         let mut workspace = Workspace::new(program.values(), program.marks());
         let level = Level::new();
-        let cells = Cells::new(program, self.around(size));
         for first in (0..count).step_by(BATCH) {
             let n = BATCH.min(count - first);
             for i in 0..BATCH {
@@ -75,10 +63,7 @@ impl SectionPlane {
                     lane.0[i] = x as f32;
                 }
             }
-            zeroset_number::at_level!(level, s => match &cells {
-                Some(cells) => cells.gradients(s, &mut workspace, n),
-                None => gradients(s, program.values(), &mut workspace, n),
-            });
+            zeroset_number::at_level!(level, s => gradients(s, program.values(), &mut workspace, n));
             let [(right, _), (up, _)] = self.directions();
             for i in 0..n {
                 let (value, gradient) = program.shown_distance(workspace.gradient(i));

@@ -70,7 +70,7 @@ pub(crate) fn cells(scene: &Scene) -> Result<CellSavings, RenderError> {
     let points = part.statistics.evaluations.total() as f64;
     drop(whole);
 
-    let prepared = renderer.prepare_scene(scene)?;
+    let prepared = renderer.prepare_scene(scene)?.with_cells();
     let picture = || prepared.render_part([SIDE, SIDE], &planes, &Silent);
     let mut film = None;
     let first = timed(&mut || film = Some(picture().1));
