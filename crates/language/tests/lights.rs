@@ -27,7 +27,7 @@ fn scene(text: &str) -> Scene {
 #[track_caller]
 fn refused(text: &str, language: Language, words: &[&str]) {
     let failed = load_text("a.star", text, language, None, &Options::default());
-    let said = failed.err().expect(text).report.to_string();
+    let said = failed.expect_err(text).report.to_string();
     for word in words {
         assert!(said.contains(word), "\"{word}\" is not in: {said}");
     }
