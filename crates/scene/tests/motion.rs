@@ -32,10 +32,13 @@ fn moments_are_seen_alike() {
     assert!((0..64).all(|i| moment_of(4 * i, 256, 16, 3) == moment_of(4 * i + 3, 256, 16, 3)));
 }
 
+/// What was asked for: the eyes of the scene and of the camera, the seed, the samples.
+type Note = (f32, f32, u32, Range<u32>);
+
 /// Notes what it is asked for: the eye's x stands for the scene.
 struct Notes {
     scene: Arc<Scene>,
-    notes: Arc<Mutex<Vec<(f32, f32, u32, Range<u32>)>>>,
+    notes: Arc<Mutex<Vec<Note>>>,
 }
 
 impl Prepared for Notes {

@@ -297,7 +297,7 @@ fn table(of: &Image) -> Image {
         .map(|(x, y)| weight(x, y))
         .collect();
     let all: f64 = weights.iter().sum();
-    if !(all > 0.0) {
+    if all <= 0.0 {
         // nothing is bright: all directions are alike
         weights.fill(1.0);
     }

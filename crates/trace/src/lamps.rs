@@ -84,6 +84,15 @@ pub(crate) fn counts(
     }
 }
 
+/// What fog leaves of light on the way `t` from the height `y`, which goes up by `rise` over a scene unit.
+fn in_air(sample: &TileSample<'_>, y: f32, rise: f32, t: f32) -> f32 {
+    let air = &sample.job.picture.air;
+    if !air.is_foggy() {
+        return 1.0;
+    }
+    1.0 - air::share(air.density, air.falloff, y, rise, t)
+}
+
 /// Adds the light of a lamp, looked for at a place of it.
 pub(crate) fn look<S: Simd>(
     s: S,
@@ -101,7 +110,8 @@ pub(crate) fn look<S: Simd>(
             true => counts(sample, q, i, aimed.to, found),
             false => [1.0, 1.0],
         };
-        let light = lamp.strength * aimed.falloff;
+        let left = in_air(sample, origin.y, aimed.to.y, aimed.distance);
+        let light = lamp.strength * (aimed.falloff * left);
         q.aim.set(i, aimed.to, aimed.distance, light, counted);
     }
     find(s, sample, shadow, q);
@@ -116,17 +126,13 @@ pub(crate) fn look_around<S: Simd>(
     q: &mut Scratch,
 ) {
     let ambient = sample.job.picture.scene.sky().ambient;
-    let air = &sample.job.picture.air;
     for i in 0..q.hits.count {
         let state = q.paths.state((q.hits.word[i] & ORDINAL) as usize);
         let surfaces = state.bounces + state.reflections + state.refractions;
         let (to, found) = map.choose(draw(sample, &state, environment::DECISION + surfaces));
-        let mut light = map.radiance(to) * (1.0 / (found * std::f32::consts::PI).max(1e-30));
-        if air.is_foggy() {
-            let y = (q.hits.point(i) + q.hits.normal(i) * q.hits.offset[i]).y;
-            let share = air::share(air.density, air.falloff, y, to.y, air::ENDLESS);
-            light = light * (1.0 - share);
-        }
+        let y = (q.hits.point(i) + q.hits.normal(i) * q.hits.offset[i]).y;
+        let left = in_air(sample, y, to.y, air::ENDLESS);
+        let light = map.radiance(to) * (left / (found * std::f32::consts::PI).max(1e-30));
         // as it counts where it lights the scene, and where it is seen in a mirror
         let [body, mirror] = counts(sample, q, i, to, found);
         let mirror = if state.is_scattered {

@@ -9,14 +9,18 @@ use crate::framing::axes_of;
 use crate::images;
 use glam::{DMat3, DQuat, DVec3, EulerRot, Vec3};
 use zeroset_catalogue::{Dimension, LARGE, SMALL};
-use zeroset_scene::environment::{Environment, STRENGTH as STRONGEST, Surroundings, TURBIDITY};
+use zeroset_scene::environment::{Environment, STRENGTH as STRONGEST, Surroundings};
 use zeroset_scene::light::{Fog, Light, Sky, Source};
 use zeroset_scene::material::Material;
 use zeroset_scene::scene::{self, Object};
 use zeroset_scene::settings::Shadow;
-use zeroset_scene::valid::{LAMP, LIGHTS};
+use zeroset_scene::valid::LIGHTS;
 
 const GROUP: &str = "Stage";
+
+/// [`zeroset_scene::environment::TURBIDITY`] and [`zeroset_scene::valid::LAMP`], as people write them.
+const TURBIDITY: (f64, f64) = (1.7, 10.0);
+const LAMP: (f64, f64) = (1e-6, 1e6);
 
 macro_rules! function {
     ($name:literal, $doc:literal, [$($slot:expr),*], $run:expr) => {
@@ -497,7 +501,7 @@ fn orientation(c: &Call<'_, '_>, given: Given) -> Run<DMat3> {
 /// The radius of a lamp.
 fn radius(c: &Call<'_, '_>) -> Run<f32> {
     let (least, most) = LAMP;
-    let radius = c.number_or("radius", 0.5, f64::from(least), f64::from(most))?;
+    let radius = c.number_or("radius", 0.5, least, most)?;
     Ok(radius as f32)
 }
 
@@ -541,12 +545,12 @@ fn rectangle_light(c: &mut Call<'_, '_>) -> Run<Value> {
     let (least, most) = LAMP;
     for side in size {
         let half = 0.5 * side;
-        if !(f64::from(least) <= half && half <= f64::from(most)) {
+        if !(least <= half && half <= most) {
             let m = mistake(format!(
                 "`size` of rectangle_light() is {}, allowed is {} to {}",
                 spoken(side),
-                spoken(2.0 * f64::from(least)),
-                spoken(2.0 * f64::from(most))
+                spoken(2.0 * least),
+                spoken(2.0 * most)
             ));
             return Err(match c.get("size") {
                 Some(given) => m.at(given.place),
@@ -659,7 +663,7 @@ fn environment(c: &mut Call<'_, '_>) -> Run<Option<Environment>> {
         }
         (None, Some(given)) => {
             let (least, most) = TURBIDITY;
-            let turbidity = c.ranged("turbidity", given, f64::from(least), f64::from(most))?;
+            let turbidity = c.ranged("turbidity", given, least, most)?;
             Surroundings::Clear {
                 turbidity: turbidity as f32,
                 ground: c.colour_or("ground", "#6b6660")?,

@@ -1,6 +1,6 @@
 // Light from all around, by an image of all directions. The twin of `shade/environment.rs`.
 
-fn around() -> Around {
+fn surroundings() -> Around {
     return load_around(frame.around_rows);
 }
 
@@ -24,7 +24,7 @@ fn around_colour(start: vec2f, width: f32, first: f32, count: f32, place: vec2f)
 
 /// The sky along a direction.
 fn sky_seen(d: vec3f) -> vec3f {
-    let a = around();
+    let a = surroundings();
     let place = place_of_direction(turned_around(d, a.cosine, -a.sine));
     return around_colour(vec2f(a.image_row, a.image_column), a.width, 0.0, a.height, place) * a.strength;
 }
@@ -34,7 +34,7 @@ fn surround(at: Surface, what: LocalMaterial, seen: AmbientVisibility, followed:
     if (frame.depth != 0u) {
         return vec3f(0.0);
     }
-    let a = around();
+    let a = surroundings();
     let bent = turned_around(seen.bent, a.cosine, -a.sine);
     let arriving = max(
         arriving_around(bent, a.h0, a.h1, a.h2, a.h3, a.h4, a.h5, a.h6, a.h7, a.h8),
@@ -65,7 +65,7 @@ fn around_cell(a: Around, column: u32, row: u32) -> vec2f {
 /// The light from all around that is looked for from a surface: a direction, what a white surface shows that faces it, and the density over
 /// directions with which it is chosen.
 fn light_around(path: Onward) -> Light {
-    let a = around();
+    let a = surroundings();
     let columns = u32(a.columns);
     let u = decided_point(path.pixel, path.index, AROUND_DECISION + path.bounces.x + path.bounces.y);
     // the row, by bisection, then the place in it
@@ -117,7 +117,7 @@ fn light_around(path: Onward) -> Light {
 
 /// What does not count of the light that a ray finds which is looked for too.
 fn found_already(path: Onward) -> vec3f {
-    let a = around();
+    let a = surroundings();
     let d = turned_around(path.ray.direction, a.cosine, -a.sine);
     let place = place_of_direction(d);
     let column = min(u32(max(place.x * a.columns, 0.0)), u32(a.columns) - 1u);

@@ -76,9 +76,9 @@ fn lamp_response(path: Onward, lamp: Light, ray: vec4f, at: Surface, what: Local
         answer = counted_light(path, answer, ray.xyz, found, at, what, followed);
     }
     if (lamp.kind == LAMP_AROUND) {
-        answer = as_lighting(path, answer) * (1.0 - haze(ray_from(origin, ray.xyz), ENDLESS));
+        answer = as_lighting(path, answer);
     }
-    return vec4f(answer.xyz, falloff);
+    return vec4f(answer.xyz, falloff * (1.0 - haze(ray_from(origin, ray.xyz), min(ray.w, ENDLESS))));
 }
 
 /// Whether rays may meet lights that are looked for too.

@@ -72,7 +72,12 @@ impl Plain<'_> {
                     finish,
                 );
                 let seen = if lamp.visible { 1.0 - followed } else { 1.0 };
-                let colour = light.radiance * falloff;
+                let air = Air::of(self.scene.sky(), self.scene.lights());
+                let lost = match air.is_foggy() {
+                    true => air::share(air.density, air.falloff, origin.y, to.y, distance),
+                    false => 0.0,
+                };
+                let colour = light.radiance * (falloff * (1.0 - lost));
                 sum.diffuse += colour * (answer.diffuse * lit);
                 sum.gloss += colour * (answer.gloss * lit * seen);
                 sum.grazing += colour * (answer.grazing * lit * seen);

@@ -310,14 +310,14 @@ const IN_SHADERS: [(&str, &str, &str, &str); 48] = [
     ),
     (
         "a sky that changes evenly",
-        "frame.sky_bottom, ray.direction.y)",
-        "frame.sky_bottom, ray.direction.y * abs(ray.direction.y))",
+        "frame.sky_bottom, d.y)",
+        "frame.sky_bottom, d.y * abs(d.y))",
         "the sky through a pinhole",
     ),
     (
         "a sky upside down",
-        "frame.sky_top, frame.sky_bottom, ray.direction.y)",
-        "frame.sky_bottom, frame.sky_top, ray.direction.y)",
+        "frame.sky_top, frame.sky_bottom, d.y)",
+        "frame.sky_bottom, frame.sky_top, d.y)",
         "the sky in parallel rays",
     ),
     (

@@ -82,17 +82,25 @@ fn over_floor(draw: Draw, lamp: &str, integrator: &str, right: fn(DVec3) -> f64)
     };
     let text = format!(
         "sky(color = \"black\")\nshow(plane(), material(color = \"white\", roughness = 1, specular = 0))\n{lamp}, strength = 1, color = (1, 0.5, 0.25))\n{}\
-         render(ao = none(), aa = supersample(256, \"box\"), integrator = {integrator})",
+         render(footprint = 0.01, ao = none(), aa = supersample(256, \"box\"), integrator = {integrator})",
         eye.line()
     );
     let film = draw(&loaded(&text, eye.size, None));
     let light = DVec3::from([1.0, 0.5, 0.25].map(crate::known::linear));
     let (mut worst, mut off, mut all, mut count) = (0.0f64, 0.0, 0.0, 0);
     for (x, y, u, v) in eye.pixels() {
-        let Some(p) = floor(eye.ray(u, v)).filter(|p| p.length() < 4.0) else {
+        // the mean over the pixel: light falls off fast
+        let fine = 6;
+        let inner = |k: i32| (f64::from(k) + 0.5) / f64::from(fine) - 0.5;
+        let places = (0..fine * fine).map(|k| (u + inner(k % fine), v + inner(k / fine)));
+        let shown = places.map(|(u, v)| {
+            let p = floor(eye.ray(u, v)).filter(|p| p.length() < 4.0)?;
+            Some(right(p) / f64::from(fine * fine))
+        });
+        let Some(mean) = shown.sum::<Option<f64>>() else {
             continue;
         };
-        let (found, right) = (value(&film, Plane::Colour, x, y), light * right(p));
+        let (found, right) = (value(&film, Plane::Colour, x, y), light * mean);
         worst = worst.max((found - right).abs().max_element() / right.x.max(0.05));
         off += (found - right).x;
         all += right.x;
@@ -136,7 +144,7 @@ fn found_in_three_ways(renderer: &dyn Renderer) {
             format!(
                 "sky(color = \"black\")\nshow(plane(), material({material}))\n{lamp}\n\
                  camera(eye = (0, 1.2, 3), target = (0, 0, 0.2), fov = 22)\n\
-                 render(ao = none(), aa = supersample(64, \"box\"), integrator = path(depth = 2), seed = SEED)"
+                 render(footprint = 0.01, ao = none(), aa = supersample(64, \"box\"), integrator = path(depth = 2), seed = SEED)"
             )
         };
         // a radiance of 6 of a ball of radius 0.5

@@ -20,7 +20,7 @@ pub const CHECKS: [Check; 2] = [
 /// A small lamp that nothing else lights, at a distance of 4, seen by a lens of radius 0.2 that is focused at `focus`.
 fn lamp(lens: &str, focus: &str, samples: u32) -> String {
     format!(
-        "sky(color = \"black\")\nshow(sphere(0.03), material(color = \"black\", specular = 0, emission = \"white\"))\n\
+        "sky(color = \"black\")\nshow(sphere(0.08), material(color = \"black\", specular = 0, emission = \"white\"))\n\
          sun(strength = 0)\ncamera(eye = (0, 0, 4), target = (0, 0, 0), {lens}, aperture = 0.2, focus = {focus})\n\
          render(ao = none(), aa = supersample({samples}, filter = \"box\"))"
     )
@@ -50,7 +50,7 @@ fn confusion(draw: Draw, lens: &str) -> Found {
         true => 2.0 * 15f64.to_radians().tan() / height,
         false => 2.2 / height,
     };
-    let (a, z, ball) = (0.2, 4.0, 0.03);
+    let (a, z, ball) = (0.2, 4.0, 0.08);
     let mut whole = None;
     for (focus, said) in [
         (4.0, "(1, 2, 0)"),
@@ -58,7 +58,7 @@ fn confusion(draw: Draw, lens: &str) -> Found {
         (1.6, "(0.3, -1, 2.4)"),
         (12.0, "12"),
     ] {
-        let film = draw(&loaded(&lamp(lens, said, 256), SIZE, None));
+        let film = draw(&loaded(&lamp(lens, said, 400), SIZE, None));
         let (light, found) = spread(&film);
         let (radius, own) = match is_pinhole {
             true => (a * (1.0f64 / focus - 1.0 / z).abs(), ball / z),
@@ -66,10 +66,10 @@ fn confusion(draw: Draw, lens: &str) -> Found {
         };
         // the ball's own disc, and the box of a pixel
         let right = (radius * radius + own * own) / (2.0 * pixel * pixel) + 1.0 / 6.0;
-        // what is sharp lies on four pixels
+        // what is sharp lies on few pixels
         let is_right = match radius > 0.0 {
-            true => (found / right - 1.0).abs() < 0.04,
-            false => found < 0.75,
+            true => (found / right - 1.0).abs() < 0.05,
+            false => (found / right - 1.0).abs() < 0.15,
         };
         if !is_right {
             return Err(format!(
@@ -77,7 +77,7 @@ fn confusion(draw: Draw, lens: &str) -> Found {
             ));
         }
         let whole = *whole.get_or_insert(light);
-        if (light / whole - 1.0).abs() > 0.05 {
+        if (light / whole - 1.0).abs() > 0.08 {
             return Err(format!(
                 "focus {focus}: {light} of light instead of {whole}"
             ));
