@@ -135,7 +135,6 @@ fn words_of_other_tools() {
             ("a choice as in C", "x = 1 > 0 ? 2 : 3"),
             ("and as in C", "x = 1 && 2"),
             ("not as in C", "x = !1"),
-            ("a comment as in C", "x = 1 // one"),
             ("two comparisons", "x = 0 < 1 < 2"),
             ("a type", "float d = 1.0"),
             ("OpenSCAD", "translate([1, 0, 0]) cube(1)"),
