@@ -325,6 +325,9 @@ fn program_range(program: &Program, p: [f64; 3], half: f64) -> Interval {
     Point::<Interval>::new(program.values()).value(v3(side(p[0]), side(p[1]), side(p[2])))
 }
 
+/// A formula of the point.
+type Written = Box<dyn Fn(&Expression) -> Expression>;
+
 #[test]
 fn choices_noises_and_fields() {
     let all = zeroset_catalogue::entries::catalogue();
@@ -337,7 +340,7 @@ fn choices_noises_and_fields() {
         let entry = all.map("twist").unwrap();
         cube.map(entry, vec![1.5]).unwrap()
     };
-    let cases: Vec<(&str, Box<dyn Fn(&Expression) -> Expression>)> = vec![
+    let cases: Vec<(&str, Written)> = vec![
         (
             "a kink",
             Box::new(|p| p.x().less(p.y()).choose(p.x(), p.y()) - 0.3),

@@ -856,7 +856,7 @@ fn a_first_line_has_a_stage() {
     assert_eq!(bare.scene.objects().len(), 1);
     // a formula is framed by its surface, not by the box that it lives in
     let eye = |text: &str| {
-        let camera = load(text).unwrap().scene.camera().clone();
+        let camera = *load(text).unwrap().scene.camera();
         camera.eye.length()
     };
     let (formula, shape) = (

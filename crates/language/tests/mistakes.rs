@@ -132,6 +132,12 @@ fn words_of_other_tools() {
                 "translate((1, 0, 0), sphere())",
             ),
             ("a power", "x = 2 ** 3"),
+            ("a choice as in C", "x = 1 > 0 ? 2 : 3"),
+            ("and as in C", "x = 1 && 2"),
+            ("not as in C", "x = !1"),
+            ("two comparisons", "x = 0 < 1 < 2"),
+            ("a type", "float d = 1.0"),
+            ("OpenSCAD", "translate([1, 0, 0]) cube(1)"),
         ],
     );
 }

@@ -494,7 +494,8 @@ pub(crate) fn limits() -> String {
 pub(crate) fn page(entry: &Entry) -> String {
     let mut out = format!("{}\n\n    {}\n", entry.doc, signature(entry));
     let title = |out: &mut String, title: &str| out.push_str(&format!("\n{title}\n"));
-    if !entry.parameters.is_empty() {
+    // those of a function of formulas are numbers and vectors that its line speaks of
+    if entry.parameters.iter().any(|p| !p.doc.is_empty()) {
         title(&mut out, "Parameters");
         let width = entry
             .parameters

@@ -277,16 +277,13 @@ fn examples_load() {
             .join("../../docs")
             .join(name);
         let page = std::fs::read_to_string(&path).unwrap();
+        let mut options = Options::default();
+        // of a debug build on a busy machine
+        options.limits.seconds = 60.0;
         let mut count = 0;
         for block in page.split("```python\n").skip(1) {
             let (text, _) = block.split_once("```").expect("the end of an example");
-            let loaded = load_text(
-                "scene.star",
-                text,
-                Language::Starlark,
-                None,
-                &Options::default(),
-            );
+            let loaded = load_text("scene.star", text, Language::Starlark, None, &options);
             if let Err(failed) = loaded {
                 panic!("{name}: {}\n{text}", failed.report);
             }

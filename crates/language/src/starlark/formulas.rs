@@ -133,6 +133,11 @@ pub(crate) fn more_functions() -> impl Iterator<Item = &'static Function> {
     all_functions().filter(|f| !super::is_native(f.name))
 }
 
+/// Functions of formulas whose names mean something else outside of them: a shape, a pattern.
+pub(crate) fn namesakes() -> impl Iterator<Item = &'static Function> {
+    all_functions().filter(|f| matches!(f.name, "cross" | "noise"))
+}
+
 /// Steps of the script that a proof counts as, beside those of the formula: a proof takes up to a tenth of a second.
 const PROOF: u64 = 20_000;
 

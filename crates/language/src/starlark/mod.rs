@@ -198,6 +198,7 @@ pub fn words() -> Vec<Word> {
     (natives().map(|n| Word::of(n, "function")))
         .chain(constants)
         .chain(formulas::more_functions().map(Word::of_formulas))
+        .chain(formulas::namesakes().map(Word::of_formulas))
         .chain(fields::own_methods().map(|n| Word::of(n, "method")))
         .chain([Word::of(&formulas::DISPLACE, "method")])
         .chain(fields::synonymous_methods())

@@ -125,8 +125,28 @@ fn instead(message: &str) -> Option<&'static str> {
         ),
         ("\u{b2}\u{b3}", "write pow(x, 2) for a power"),
     ];
-    if message.contains("'**'") {
-        return Some("write pow(x, 2) for a power");
+    /// What shaders, C and OpenSCAD have: what the message begins with, or holds, and what to write.
+    const HABITS: &[(&str, &str)] = &[
+        ("'**'", "write pow(x, 2) for a power"),
+        ("invalid input `?`", "write `a if condition else b`"),
+        ("invalid input `!`", "write `not`, and `!=` for unequal"),
+        (
+            "unexpected symbol '&'",
+            "write `and` between conditions; a & b is what lies in both shapes",
+        ),
+        (
+            "unexpected symbol '|'",
+            "write `or` between conditions; a | b joins shapes",
+        ),
+        ("unexpected symbol '//'", "a comment begins with #"),
+        ("comparisons are not associative", "write 0 < x and x < 2"),
+        (
+            "unexpected identifier",
+            "what is done to a shape stands behind it, as in box(1).move(x = 2); variables have no types, as in d = 1.0",
+        ),
+    ];
+    if let Some((_, write)) = HABITS.iter().find(|(words, _)| message.contains(words)) {
+        return Some(write);
     }
     let word = message.split('`').nth(1)?;
     if message.starts_with("invalid input") {

@@ -23,7 +23,9 @@ pub(crate) fn run(args: &FieldsArgs, console: &Console) -> Result<(), Failure> {
     if name == "methods" && !args.json {
         return console.emit(&methods());
     }
-    let Some(entry) = entries.iter().find(|e| e.name == name) else {
+    // a name may be a shape or a pattern, and a function of formulas as well
+    let found: Vec<&Entry> = entries.iter().filter(|e| e.name == name).collect();
+    let Some(first) = found.first() else {
         let help = match zeroset_language::report::nearest(name, entries.iter().map(|e| e.name)) {
             Some(near) => format!("did you mean `{near}`?"),
             None => "`zeroset fields` lists all names".to_owned(),
@@ -35,9 +37,9 @@ pub(crate) fn run(args: &FieldsArgs, console: &Console) -> Result<(), Failure> {
         ));
     };
     console.emit(&if args.json {
-        json::pretty(entry)?
+        json::pretty(first)?
     } else {
-        page(entry)
+        found.iter().map(|e| page(e)).collect::<Vec<_>>().join("\n")
     })
 }
 
