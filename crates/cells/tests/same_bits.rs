@@ -427,7 +427,7 @@ proptest! {
             proven.or_else(|| Formula::stated(steps, bounds, 10.0).ok())
         });
         if let Some(formula) = formula {
-            let program = compiled(&Field::formula(Arc::new(formula)));
+            let program = compiled(&Field::formula(Arc::new(formula)).unwrap());
             if has_remainders && Cells::new(&program, bounds).is_none() {
                 return Ok(());
             }

@@ -29,7 +29,11 @@ fn program(half: f64, f: impl Fn(&Expression) -> Expression) -> Program {
     let value = f(&builder.point());
     let steps = builder.finish(&value).unwrap();
     let formula = Formula::prove(steps, Aabb::centred([half; 3]), &Budget::default()).unwrap();
-    Program::compile(&Field::formula(Arc::new(formula)), &Limits::default()).unwrap()
+    Program::compile(
+        &Field::formula(Arc::new(formula)).unwrap(),
+        &Limits::default(),
+    )
+    .unwrap()
 }
 
 /// Taubin's heart (1994).

@@ -89,7 +89,7 @@ fn heart() -> Scene {
     let formula = Formula::prove(steps, bounds, &Budget::default()).expect("a slope");
     assert!(formula.slope() > 200.0);
     scene(
-        vec![("heart", Field::formula(Arc::new(formula)))],
+        vec![("heart", Field::formula(Arc::new(formula)).unwrap())],
         Vec3::new(1.5, 1.0, 4.0),
     )
 }
