@@ -107,7 +107,7 @@ fn without_samples_all_is_sharp() {
 
 fn moving(shutter: f64, time: f64, moments: bool) -> zeroset::scene::scene::Scene {
     let text = format!(
-        "sky(color = \"black\")\nshow(sphere(0.4).move(x = 1.6 * time() - 0.8, y = 0.3 * sin(360 * time())), material(color = \"black\", specular = 0, \
+        "sky(color = \"black\")\nshow(sphere(0.4).move(x = 1.6 * time() - 0.8, y = 0.3 * sin(tau * time())), material(color = \"black\", specular = 0, \
          emission = \"white\"))\nsun(strength = 0)\n\
          camera(eye = (0.2 * time(), 0, 4), target = (0.2 * time(), 0, 0), fov = 40, shutter = {shutter}, moments = 16)\n\
          render(ao = none(), aa = supersample(64, filter = \"box\"))"
