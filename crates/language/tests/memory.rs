@@ -47,6 +47,7 @@ fn patient() -> Options {
             seconds: 60.0,
             ..Limits::default()
         },
+        bare: true,
         ..Options::default()
     }
 }

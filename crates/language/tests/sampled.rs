@@ -60,6 +60,7 @@ fn load_as(
 ) -> Result<Loaded, Failed> {
     let options = Options {
         limits,
+        bare: true,
         ..Options::default()
     };
     let files = Some(Arc::new(files()) as _);

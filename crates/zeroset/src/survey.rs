@@ -224,10 +224,10 @@ mod tests {
 
     #[test]
     fn a_stated_slope_that_is_too_low_is_found_out() {
-        // a wave of 20 radians a unit (angles are degrees): its slope along x is 19 cos(20 x)
+        // its slope along x is 19 cos(20 x)
         let wave = |slope: &str| {
             let text = format!(
-                "show(field(lambda p: p.y + sin(p.x * 1145.915590261646) * 0.95, size = 2, slope = {slope}).move(x = 5))"
+                "show(field(lambda p: p.y + sin(p.x * 20) * 0.95, size = 2, slope = {slope}).move(x = 5))"
             );
             exceeded(&scene(&text).objects()[0].field)
         };

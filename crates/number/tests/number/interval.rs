@@ -38,7 +38,10 @@ fn single_miss(tree: &Tree, place: &Place, share: f64) -> Option<String> {
         SingleInterval::new(lo, ends.fold(f64::NEG_INFINITY, f64::max))
     };
     let mut range = tree.eval(v3(side(0), side(1), side(2)), &mut |_| {});
-    range.lo += share * (range.hi - range.lo);
+    // (a share of nothing of what is endless is nothing)
+    if share > 0.0 {
+        range.lo += share * (range.hi - range.lo);
+    }
     for (name, level) in levels() {
         for p in &points {
             if let Some(value) = in_lanes(tree, level, *p)
