@@ -20,6 +20,7 @@ use zeroset_trace::CpuRenderer;
 fn written(text: &str, size: u32) -> Scene {
     let options = Options {
         size: Some([size, size]),
+        bare: true,
         ..Options::default()
     };
     let loaded = load_text("test.star", text, Language::Starlark, None, &options);

@@ -52,7 +52,7 @@ fn parameters_change_what_is_loaded() {
         set,
         [("bite", "0.75"), ("floor", "false"), ("style", "sharp")]
     );
-    // what was set is a scene
+    // what was set is a scene: one object, on the floor of those that say nothing but what is shown
     harness.state_mut().absorb(outcome(SCENE, &options));
     assert_eq!(
         harness
@@ -63,7 +63,7 @@ fn parameters_change_what_is_loaded() {
             .scene
             .objects()
             .len(),
-        1
+        2
     );
     harness.run();
     assert!(
