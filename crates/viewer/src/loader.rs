@@ -232,7 +232,8 @@ mod tests {
 
         std::fs::write(&path, "show(box(0.5))\nshow(sphere(1))\n").unwrap();
         let mended = loader.wait(patience()).unwrap();
-        assert_eq!(mended.result.unwrap().scene.objects().len(), 2);
+        // both, and the floor of scenes that say nothing but what is shown
+        assert_eq!(mended.result.unwrap().scene.objects().len(), 3);
         assert!(loader.wait(Duration::from_millis(300)).is_none());
     }
 
