@@ -14,7 +14,7 @@ use crate::material::{Image, Ink, Material, Pattern};
 use crate::methods::Value::{Real, Whole};
 use crate::scene::{MOMENTS, SceneParts};
 use crate::settings::Settings;
-use glam::Vec3;
+use glam::{DMat3, DVec3, Vec3};
 use methods::setting;
 use zeroset_catalogue::{Dimension, LARGE, SMALL};
 
@@ -243,7 +243,33 @@ fn pattern(whole: &Pattern) -> Checked {
     // asked for first: what is too deep is not gone down
     let parts: Vec<&Pattern> = whole.parts().take(Pattern::MOST + 1).collect();
     count("parts", parts.len() as u32, 1, Pattern::MOST as u32)?;
-    parts.into_iter().try_for_each(pattern_part)
+    parts.into_iter().try_for_each(pattern_part)?;
+    placements(whole, DMat3::IDENTITY, DVec3::ZERO)
+}
+
+/// Whether patterns that were placed several times, or within others, are still where numbers are: `rows` and `offset` lead to `pattern`.
+fn placements(pattern: &Pattern, rows: DMat3, offset: DVec3) -> Checked {
+    if let Pattern::Placed {
+        pattern,
+        rows: own,
+        offset: by,
+    } = pattern
+    {
+        let own =
+            DMat3::from_cols(own[0].as_dvec3(), own[1].as_dvec3(), own[2].as_dvec3()).transpose();
+        let (rows, offset) = (own * rows, own * offset + by.as_dvec3());
+        for row in [rows.row(0), rows.row(1), rows.row(2)] {
+            vector("rows", row.as_vec3(), LARGE as f32)?;
+        }
+        vector("offset", offset.as_vec3(), FAR)?;
+        let volume = rows.determinant().abs() as f32;
+        number("determinant of rows", volume, f32::MIN_POSITIVE, f32::MAX)?;
+        return placements(pattern, rows, offset);
+    }
+    pattern.inks().iter().try_for_each(|ink| match ink {
+        Ink::Pattern(inner) => placements(inner, rows, offset),
+        Ink::Colour(_) => Ok(()),
+    })
 }
 
 fn pattern_part(pattern: &Pattern) -> Checked {
@@ -296,14 +322,8 @@ fn pattern_part(pattern: &Pattern) -> Checked {
             number("sharpness", *sharpness, 1.0, 64.0)
         }
         Pattern::Orbit { colours: c } => colours(c),
-        Pattern::Placed { rows, offset, .. } => {
-            for row in rows {
-                vector("rows", *row, LARGE as f32)?;
-            }
-            vector("offset", *offset, FAR)?;
-            let volume = rows[0].dot(rows[1].cross(rows[2])).abs();
-            number("determinant of rows", volume, f32::MIN_POSITIVE, f32::MAX)
-        }
+        // asked for with those that it is in: see `placements`
+        Pattern::Placed { .. } => Ok(()),
     }
 }
 

@@ -260,6 +260,23 @@ fn directions_images_and_shapes_fit() {
         }),
         "materials[0].pattern: `from` and `to` must differ",
     );
+    // each fits, all together are nowhere
+    let tiny = |pattern| Pattern::Placed {
+        pattern: Box::new(pattern),
+        rows: [Vec3::X, Vec3::Y, Vec3::Z].map(|row| row * 1e6),
+        offset: Vec3::ZERO,
+    };
+    let error = refused(|s| {
+        let checker = Pattern::Checker {
+            colours: [Vec3::ONE.into(), Vec3::ZERO.into()],
+            size: 1.0,
+        };
+        s.materials[0].pattern = tiny(tiny(checker));
+    });
+    assert!(
+        error.to_string().starts_with("materials[0].pattern.rows"),
+        "{error}"
+    );
     for (width, height, pixels) in [(0, 0, 0), (2, 2, 3), (u32::MAX, u32::MAX, 1)] {
         let image = Arc::new(Image {
             path: "wood.png".into(),

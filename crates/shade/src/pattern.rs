@@ -52,6 +52,10 @@ impl<R: Real> Place<R> {
     /// coordinates the derivatives.
     #[inline(always)]
     pub fn mapped(self, point: Vec3<R>, rows: [Vec3<R>; 3]) -> Self {
+        let rows = rows.map(
+            #[inline(always)]
+            |row| tame(row),
+        );
         Place {
             point,
             normal: mapped_normal(self.normal, rows),
@@ -61,6 +65,18 @@ impl<R: Real> Place<R> {
         }
     }
 }
+
+/// Derivatives that are numbers: a map may have none at a place, and what has no end says nothing of how wide a pixel is.
+#[inline(always)]
+pub fn tame<R: Real>(row: Vec3<R>) -> Vec3<R> {
+    row.map(
+        #[inline(always)]
+        |x| R::choose(x.abs().below(STEEPEST_MAP), x, x.lit(0.0)),
+    )
+}
+
+/// The largest derivative of a map that counts.
+const STEEPEST_MAP: f32 = 1e12;
 
 /// The product of a matrix of these rows with a vector.
 #[inline(always)]
@@ -205,13 +221,20 @@ pub fn orbit<R: Real>(at: &Place<R>) -> [R; 4] {
 /// 1978). What is seen from direction `d` stays in sight.
 #[inline(always)]
 pub fn bumped<R: Real>(normal: Vec3<R>, across: [Vec3<R>; 2], rise: [R; 2], d: Vec3<R>) -> Vec3<R> {
-    let turned = normal - across[0] * rise[0] - across[1] * rise[1];
+    let [a, b] = rise.map(
+        #[inline(always)]
+        |rise| rise.clamp(-STEEPEST_BUMP, STEEPEST_BUMP),
+    );
+    let turned = normal - across[0] * a - across[1] * b;
     let turned = turned / turned.length();
     // what would face away is seen edge-on, nearly
     let away = (turned.dot(d) + GRAZING).max(0.0);
     let turned = turned - d * away;
     turned / turned.length()
 }
+
+/// The steepest that a height is taken for: the square of what is steeper may be no number.
+const STEEPEST_BUMP: f32 = 1e6;
 
 /// Cosine at which bumps are seen at least.
 const GRAZING: f32 = 0.02;

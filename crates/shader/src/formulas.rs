@@ -157,6 +157,7 @@ formulas! {
 
     // patterns
     fn pixel_stretch(normal: Vec3, direction: Vec3, pixel: Number) = pattern::stretch(normal, direction, pixel);
+    fn tame_row(row: Vec3) = pattern::tame(row);
     fn mapped_normal(normal: Vec3, x: Vec3, y: Vec3, z: Vec3) = pattern::mapped_normal(normal, [x, y, z]);
     fn mapped_scale(x: Vec3, y: Vec3, z: Vec3) = pattern::mapped_scale([x, y, z]);
     fn pattern_checker(point: Vec3, normal: Vec3, width: Number, stretch: Vec3, size: Number) =

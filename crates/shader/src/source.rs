@@ -621,7 +621,7 @@ const TEXTURES: [&str; 4] = [
 ];
 
 /// Formulas that every picture needs.
-const EVERYWHERE: [&str; 26] = [
+const EVERYWHERE: [&str; 27] = [
     "false_position",
     "on_plane",
     "pinhole_ray",
@@ -641,6 +641,7 @@ const EVERYWHERE: [&str; 26] = [
     "filter_mitchell",
     "pixel_stretch",
     "mapped_normal",
+    "tame_row",
     "mapped_scale",
     "sky_colour",
     "towards_point",

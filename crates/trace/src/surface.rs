@@ -11,7 +11,7 @@ use zeroset_scene::material::Material;
 use zeroset_scene::settings::Shading;
 use zeroset_shade::coat::{Coat, unmapped};
 use zeroset_shade::march::MARKS_BEHIND;
-use zeroset_shade::pattern::Place;
+use zeroset_shade::pattern::{Place, tame};
 use zeroset_shade::surface::{BLURRED, LocalMaterial};
 
 /// What a surface is made of, and its normal with the heights that it is shown with.
@@ -49,9 +49,9 @@ impl Spaces<'_> {
                 |lane: usize| Lanes(S::f32s::from_slice(s, &lanes[lane].0[k..][..S::f32s::LEN]));
             let point = v3(of(0), of(4), of(8));
             let rows = [
-                v3(of(1), of(2), of(3)),
-                v3(of(5), of(6), of(7)),
-                v3(of(9), of(10), of(11)),
+                tame(v3(of(1), of(2), of(3))),
+                tame(v3(of(5), of(6), of(7))),
+                tame(v3(of(9), of(10), of(11))),
             ];
             (at.mapped(point, rows), rows)
         };

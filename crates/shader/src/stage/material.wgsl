@@ -26,7 +26,10 @@ fn place_on(point: vec3f, normal: vec3f, d: vec3f, pixel: f32, orbit: vec4f) -> 
 }
 
 /// A place in another space, where it is at `point`.
-fn mapped(at: Place, point: vec3f, x: vec3f, y: vec3f, z: vec3f) -> Mapped {
+fn mapped(at: Place, point: vec3f, along_x: vec3f, along_y: vec3f, along_z: vec3f) -> Mapped {
+    let x = tame_row(along_x);
+    let y = tame_row(along_y);
+    let z = tame_row(along_z);
     let stretch = vec3f(dot(x, at.stretch), dot(y, at.stretch), dot(z, at.stretch));
     let place = Place(point, mapped_normal(at.normal, x, y, z), at.width * mapped_scale(x, y, z), stretch, at.orbit);
     return Mapped(place, x, y, z);
