@@ -134,12 +134,15 @@ fn plain(rest: &mut Rest<'_>, row: &mut [[u8; 4]]) -> Result<(), String> {
     Ok(())
 }
 
+/// The brightest that a pixel may be, as colours of scenes: sums of what is brighter may be no number. (The sun is 1e9.)
+const BRIGHTEST: f32 = 1e12;
+
 fn colour([r, g, b, exponent]: [u8; 4]) -> Vec3 {
     if exponent == 0 {
         return Vec3::ZERO;
     }
     let scale = (f32::from(exponent) - 136.0).exp2();
-    Vec3::new(f32::from(r), f32::from(g), f32::from(b)) * scale
+    (Vec3::new(f32::from(r), f32::from(g), f32::from(b)) * scale).min(Vec3::splat(BRIGHTEST))
 }
 
 #[cfg(test)]
@@ -170,6 +173,42 @@ mod tests {
         assert_eq!(found[8], Vec3::new(255.0 / 256.0, 0.0, 0.0));
         assert_eq!(found[9], Vec3::new(0.0, 2.0, 0.0));
         assert!(found[10..].iter().all(|c| *c == Vec3::ZERO));
+    }
+
+    /// Whatever a byte is, and wherever a file ends: as many pixels as it says, all of them numbers, or an error.
+    #[test]
+    fn damage_is_survived() {
+        let mut whole = HEAD.to_vec();
+        whole.extend([
+            2, 2, 0, 8, 136, 128, 136, 64, 8, 0, 32, 64, 96, 128, 160, 192, 224,
+        ]);
+        whole.extend([136, 129]);
+        whole.extend([255, 0, 0, 128, 0, 128, 0, 130, 9, 9, 9, 0, 1, 1, 1, 5]);
+        let survives = |bytes: &[u8]| {
+            let Ok((size, rest)) = head(bytes) else {
+                return;
+            };
+            let count = u64::from(size[0]) * u64::from(size[1]);
+            // what is larger is charged for before its pixels are asked for
+            if count < 1000
+                && let Ok(found) = pixels(size, rest)
+            {
+                assert_eq!(found.len() as u64, count);
+                assert!(
+                    found
+                        .iter()
+                        .all(|c| c.is_finite() && c.max_element() <= BRIGHTEST)
+                );
+            }
+        };
+        for end in 0..whole.len() {
+            survives(&whole[..end]);
+            for byte in 0..=255 {
+                let mut bytes = whole.clone();
+                bytes[end] = byte;
+                survives(&bytes);
+            }
+        }
     }
 
     #[test]

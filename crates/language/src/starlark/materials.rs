@@ -2,7 +2,7 @@
 
 use super::mistake::{Run, mistake};
 use super::native::{Call, Given, Native, Slot, slot, spoken};
-use super::place::{coordinates, each_axis, turned};
+use super::place::{MOVE, TURN, coordinates, each_axis, turned};
 use super::value::{Thing, Value};
 use crate::draft::unit;
 use crate::images;
@@ -12,6 +12,9 @@ use zeroset_scene::colour;
 use zeroset_scene::material::{Bump, Ink, Material, Pattern};
 
 macro_rules! function {
+    ($group:literal, $name:literal, $doc:literal, $slots:ident, $run:expr) => {
+        Native { name: $name, doc: $doc, group: $group, params: $slots, rest: false, run: $run }
+    };
     ($group:literal, $name:literal, $doc:literal, [$($slot:expr),*], $run:expr) => {
         Native { name: $name, doc: $doc, group: $group, params: { const S: &[Slot] = &[$($slot),*]; S }, rest: false, run: $run }
     };
@@ -429,11 +432,7 @@ pub(crate) const METHODS: &[Native] = &[
         "Patterns",
         "move",
         "Moves the pattern over what it is painted on.",
-        [
-            slot("x", "0", "How far along x; or all three as (x, y, z)."),
-            slot("y", "0", "How far along y."),
-            slot("z", "0", "How far along z.")
-        ],
+        MOVE,
         |c| {
             let offset = coordinates(c, LARGE)?;
             let back = offset.map(|x| -x);
@@ -444,22 +443,7 @@ pub(crate) const METHODS: &[Native] = &[
         "Patterns",
         "turn",
         "Turns the pattern about the origin, as `turn` of a shape.",
-        [
-            slot("x", "0", "Degrees about x; or all three as (x, y, z)."),
-            slot("y", "0", "Degrees about y."),
-            slot("z", "0", "Degrees about z."),
-            slot(
-                "axis",
-                "None",
-                "An axis such as \"y\" or (1, 1, 0), instead of x, y, z."
-            ),
-            slot(
-                "angle",
-                "None",
-                "Degrees about the axis, counter-clockwise when it points at you."
-            ),
-            slot("quaternion", "None", "(x, y, z, w), instead of all others.")
-        ],
+        TURN,
         |c| {
             let r = turned(c)?.rotation;
             let back = [0, 1, 2].map(|i| [r[0][i], r[1][i], r[2][i]]);

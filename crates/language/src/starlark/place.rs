@@ -9,7 +9,35 @@ use zeroset_field::field::Paint;
 use zeroset_field::placement::Placement;
 use zeroset_field::repetition::{MAX_COPIES, Polar, Repetition};
 
+/// Where a move goes.
+pub(super) const MOVE: &[Slot] = &[
+    slot("x", "0", "How far along x; or all three as (x, y, z)."),
+    slot("y", "0", "How far along y."),
+    slot("z", "0", "How far along z."),
+];
+
+/// What says a turn.
+pub(super) const TURN: &[Slot] = &[
+    slot("x", "0", "Degrees about x; or all three as (x, y, z)."),
+    slot("y", "0", "Degrees about y."),
+    slot("z", "0", "Degrees about z."),
+    slot(
+        "axis",
+        "None",
+        "An axis such as \"y\" or (1, 1, 0), instead of x, y, z.",
+    ),
+    slot(
+        "angle",
+        "None",
+        "Degrees about the axis, counter-clockwise when it points at you.",
+    ),
+    slot("quaternion", "None", "(x, y, z, w), instead of all others."),
+];
+
 macro_rules! method {
+    ($group:literal, $name:literal, $doc:literal, $slots:ident, $run:expr) => {
+        Native { name: $name, doc: $doc, group: $group, params: $slots, rest: false, run: $run }
+    };
     ($group:literal, $name:literal, $doc:literal, [$($slot:expr),*], $run:expr) => {
         Native { name: $name, doc: $doc, group: $group, params: { const S: &[Slot] = &[$($slot),*]; S }, rest: false, run: $run }
     };
@@ -17,40 +45,15 @@ macro_rules! method {
 
 /// The methods.
 pub(crate) const METHODS: &[Native] = &[
-    method!(
-        "Placement",
-        "move",
-        "Moves the shape.",
-        [
-            slot("x", "0", "How far along x; or all three as (x, y, z)."),
-            slot("y", "0", "How far along y."),
-            slot("z", "0", "How far along z.")
-        ],
-        |c| {
-            let offset = coordinates(c, LARGE)?;
-            place(c, Placement::moved(offset))
-        }
-    ),
+    method!("Placement", "move", "Moves the shape.", MOVE, |c| {
+        let offset = coordinates(c, LARGE)?;
+        place(c, Placement::moved(offset))
+    }),
     method!(
         "Placement",
         "turn",
         "Turns the shape about the origin: about x, then y, then z, or about an axis.",
-        [
-            slot("x", "0", "Degrees about x; or all three as (x, y, z)."),
-            slot("y", "0", "Degrees about y."),
-            slot("z", "0", "Degrees about z."),
-            slot(
-                "axis",
-                "None",
-                "An axis such as \"y\" or (1, 1, 0), instead of x, y, z."
-            ),
-            slot(
-                "angle",
-                "None",
-                "Degrees about the axis, counter-clockwise when it points at you."
-            ),
-            slot("quaternion", "None", "(x, y, z, w), instead of all others.")
-        ],
+        TURN,
         turn
     ),
     method!(
