@@ -41,6 +41,17 @@ impl Workspace {
         }
     }
 
+    /// Makes room for the values and gradients of another tape.
+    pub fn make_room(&mut self, values: Tape<'_>) {
+        let lanes = usize::from(values.code.registers);
+        if self.lanes.len() < lanes {
+            self.lanes.resize(lanes, Lane::ZERO);
+        }
+        if self.duals.len() < 4 * lanes {
+            self.duals.resize(4 * lanes, Lane::ZERO);
+        }
+    }
+
     /// The points to evaluate at: x, y and z.
     #[inline(always)]
     pub fn points_mut(&mut self) -> &mut [Lane; 3] {

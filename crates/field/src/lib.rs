@@ -24,6 +24,7 @@
 
 #![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
+pub mod closed;
 mod compile;
 pub mod field;
 pub mod formula;

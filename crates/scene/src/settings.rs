@@ -111,7 +111,7 @@ choice! {
             #[serde(default, skip_serializing_if = "Option::is_none")]
             reach: Limit = None, REACH;
             /// Samples along a cone, at most.
-            steps: u32 = 14, STEPS
+            steps: u32 = 24, STEPS
         },
         /// Samples along the normal with halving weights.
         Quilez("quilez", "Quilez", "Tomczak 2012, algorithm 3.4 and equation 3.31") {

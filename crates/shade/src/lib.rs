@@ -22,6 +22,7 @@
 
 pub mod air;
 pub mod bsdf;
+pub mod closed;
 pub mod coat;
 pub mod coverage;
 pub mod environment;

@@ -28,6 +28,8 @@ use zeroset_shade::surface::{Lighting, colour, transmittance};
 pub(crate) struct TileSample<'a> {
     pub(crate) job: &'a Job<'a>,
     pub(crate) solid: &'a Solid<'a>,
+    /// The same as what rays from outside of it are followed through: solids in closed form, and the rest.
+    pub(crate) marched: &'a Solid<'a>,
     pub(crate) area: &'a Area,
     /// Its number.
     pub(crate) index: u32,
@@ -75,7 +77,7 @@ pub(crate) fn light<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
             lamps::look(s, sample, &lamp, light.shadow, number as u32, q);
             continue;
         }
-        shadows(s, sample.solid, light, q);
+        shadows(s, sample.solid, sample.marched, light, q);
         add_light(
             s,
             sample,

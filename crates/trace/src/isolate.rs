@@ -21,7 +21,7 @@ pub(crate) struct Line {
 }
 
 impl Line {
-    fn at(&self, t: f64) -> Vec3<F64> {
+    pub(crate) fn at(&self, t: f64) -> Vec3<F64> {
         let along = |k: usize| F64(f64::from(self.origin[k]) + f64::from(self.direction[k]) * t);
         v3(along(0), along(1), along(2))
     }
@@ -34,6 +34,12 @@ impl Line {
             Interval::new(a.y.0, b.y.0),
             Interval::new(a.z.0, b.z.0),
         )
+    }
+
+    /// The sum of the sizes of the coordinates at `t`.
+    pub(crate) fn size(&self, t: f64) -> f64 {
+        let at = self.at(t);
+        at.x.0.abs() + at.y.0.abs() + at.z.0.abs()
     }
 
     fn sided(&self, f: f64) -> f64 {
@@ -98,12 +104,28 @@ impl<'p> Isolation<'p> {
         }
     }
 
+    /// Whether the value may jump: ranges of it say nothing then.
+    pub(crate) fn is_chaotic(&self) -> bool {
+        self.chaotic
+    }
+
+    /// Whether the value changes by at most 1 per unit.
+    pub(crate) fn is_bound(&self) -> bool {
+        self.bound
+    }
+
+    /// By how much rounding may be off at `t`.
+    pub(crate) fn rounding(&self, line: &Line, t: f64) -> f64 {
+        ROUNDING * line.size(t)
+    }
+
     /// Evaluations since the last time that this was asked.
     pub(crate) fn take_evaluations(&mut self) -> u64 {
         std::mem::take(&mut self.evaluations)
     }
 
-    fn value(&mut self, line: &Line, t: f64) -> f64 {
+    /// The value at `t`, from the side that is followed.
+    pub(crate) fn value(&mut self, line: &Line, t: f64) -> f64 {
         self.evaluations += 1;
         let at = line.at(t);
         // which cells there are makes no value another one, but it does ranges
@@ -132,7 +154,7 @@ impl<'p> Isolation<'p> {
 
     /// Whether the field is nowhere below `limit` on a part of the ray, as far as is easily seen: by its range over the box
     /// around it, by its slope where it is a bound, by the range of its derivative along the ray.
-    fn is_clear(&mut self, line: &Line, from: f64, to: f64, limit: f64) -> bool {
+    pub(crate) fn is_clear(&mut self, line: &Line, from: f64, to: f64, limit: f64) -> bool {
         self.evaluations += 1;
         let part = line.part(from, to);
         let range = self.ranges.value(part);
@@ -185,8 +207,7 @@ impl<'p> Isolation<'p> {
     /// The first place between `start` and `end` where the field is behind the surface, beyond rounding and for longer than
     /// `least`.
     pub(crate) fn first(&mut self, line: &Line, start: f32, end: f32, least: f32) -> Crossing {
-        let size = |p: Vec3<F64>| p.x.0.abs() + p.y.0.abs() + p.z.0.abs();
-        let behind = |t: f64| -ROUNDING * size(line.at(t));
+        let behind = |t: f64| -ROUNDING * line.size(t);
         let instructions = self.program.structure().values.instructions.len();
         let most = (WORK / instructions.max(1)).max(64);
         let end = f64::from(end.min(f32::MAX));

@@ -1,5 +1,6 @@
 //! What is done for a tile: the stages, sample by sample.
 
+use crate::closed::{land, limit};
 use crate::closest::{Plan, closest};
 use crate::integrator::{Direct, Integrator, TileSample};
 use crate::lamps::shine_before;
@@ -8,8 +9,8 @@ use crate::normal::{normals, place};
 use crate::order::{self, PLACE};
 use crate::path::PathTracer;
 use crate::paths::{PathRay, PathState};
-use crate::renderer::{Done, PreparedScene};
-use crate::simd::{load, splat, store, store3};
+use crate::renderer::{Beside, Done, PreparedScene};
+use crate::simd::{first_lanes, load, splat, store, store3};
 use crate::stop::Stop;
 use crate::surface::marks;
 use crate::tile::{Area, HEIGHT, Scratch, Solid, WIDTH};
@@ -17,7 +18,8 @@ use crate::whitted::Whitted;
 use crate::{cone, coverage, primary, resolve};
 use fearless_simd::{Simd, prelude::*};
 use std::ops::Range;
-use zeroset_number::{Lanes, Vec3, v3};
+use zeroset_number::lanes::LaneMask;
+use zeroset_number::{Lanes, Ops, Vec3, v3};
 use zeroset_scene::accumulator::{Accumulator, Sum};
 use zeroset_scene::camera::Camera;
 use zeroset_scene::film::Plane;
@@ -45,6 +47,8 @@ pub(crate) struct Job<'a> {
     /// How many of them in each tile, where that differs.
     map: Option<&'a SampleMap>,
     plan: Plan,
+    /// What is marched beside solids in closed form, where rays begin outside everything.
+    beside: Option<&'a Beside>,
     /// Whether the marks of hits differ and are needed.
     marks: bool,
     /// What a surface without a material is made of.
@@ -62,9 +66,16 @@ impl<'a> Job<'a> {
         let wanted = Plane::ALL.map(|plane| into.planes().contains(&plane));
         let objects = wanted[Plane::Object as usize] || picture.methods.len() > 1;
         let samples = into.filter().map(|filter| (into.wanted(), filter));
+        let view = View::new(camera, into.size(), settings.footprint);
+        // the cones of coverage look at all edges, those of floors too
+        let beside = match into.antialias() {
+            Antialias::Coverage { .. } => None,
+            Antialias::None | Antialias::Supersample { .. } => picture.beside(&view),
+        };
         Job {
             picture,
-            view: View::new(camera, into.size(), settings.footprint),
+            view,
+            beside,
             wanted,
             samples,
             layers: match into.antialias() {
@@ -137,6 +148,8 @@ impl<'a> Job<'a> {
             self.samples(),
             stop,
         );
+        let beside = self.beside.map(|beside| beside.solid(&solid, self));
+        let marched = beside.as_ref().unwrap_or(&solid);
         q.planes.clear();
         q.shared.clear();
         let mut hits = 0;
@@ -149,7 +162,14 @@ impl<'a> Job<'a> {
                 break;
             }
             self.aim(area, index, q);
-            hits += self.trace(s, &solid, area, index, q);
+            let sample = TileSample {
+                job: self,
+                solid: &solid,
+                marched,
+                area,
+                index,
+            };
+            hits += self.trace(s, &sample, q);
             if stop.is_set() {
                 // what was found is not all: it must not reach the pixels of the tiles around
                 break;
@@ -204,21 +224,21 @@ impl<'a> Job<'a> {
     }
 
     /// Finds what the rays hit and the light that comes from there. Gives the number of hits.
-    fn trace<S: Simd>(
-        &self,
-        s: S,
-        solid: &Solid<'_>,
-        area: &Area,
-        index: u32,
-        q: &mut Scratch,
-    ) -> u64 {
+    fn trace<S: Simd>(&self, s: S, sample: &TileSample<'_>, q: &mut Scratch) -> u64 {
+        let TileSample {
+            solid,
+            marched,
+            area,
+            index,
+            ..
+        } = *sample;
         let settings = self.picture.scene.settings();
         if index == self.taken.start && !self.has_lens() {
             let spread = self.samples.is_some() || self.layers.is_some();
             let reach = if spread { 0.5 } else { 0.0 };
             cone::prepass(
                 s,
-                solid,
+                marched,
                 area,
                 reach,
                 settings.prepass.then_some(settings.march),
@@ -230,7 +250,7 @@ impl<'a> Job<'a> {
         }
         if self.has_lens() {
             let places = [&q.jitter, &q.lens];
-            primary::aim_lens(s, solid, area, places, &mut q.queue);
+            primary::aim_lens(s, marched, area, places, &mut q.queue);
         } else {
             primary::aim(s, solid.view, area, &q.jitter, &mut q.queue);
         }
@@ -238,19 +258,23 @@ impl<'a> Job<'a> {
             Some(layers) => coverage::part(s, solid, area, layers, q),
             None => q.paths.begin(),
         }
-        let (queue, memory) = q.split();
-        q.counts.march += closest(s, &self.plan, solid, queue, memory);
+        follow(
+            s,
+            &self.plan,
+            marched,
+            q,
+            #[inline(always)]
+            |i| {
+                // what a tile has beyond the edge of the picture is not there
+                let (x, y) = (load(s, &order::X, i), load(s, &order::Y, i));
+                x.below(area.width as f32) & y.below(area.height as f32)
+            },
+        );
         self.surfaces(s, solid, self.wants(Plane::Residual), q);
         self.identify(s, solid, q);
-        let sample = TileSample {
-            job: self,
-            solid,
-            area,
-            index,
-        };
         let hits = q.hits.count as u64;
         match settings.integrator {
-            settings::Integrator::Direct => self.light(s, &Direct, &sample, q),
+            settings::Integrator::Direct => self.light(s, &Direct, sample, q),
             settings::Integrator::Whitted {
                 reflections,
                 refractions,
@@ -259,10 +283,10 @@ impl<'a> Job<'a> {
                     reflections,
                     refractions,
                 };
-                self.light(s, &whitted, &sample, q);
+                self.light(s, &whitted, sample, q);
             }
             settings::Integrator::Path { depth, .. } => {
-                self.light(s, &PathTracer { depth }, &sample, q);
+                self.light(s, &PathTracer { depth }, sample, q);
             }
         }
         hits
@@ -298,12 +322,13 @@ impl<'a> Job<'a> {
             })
         });
         while !solid.stop.is_set()
-            && let Some(inside) = q.paths.next(solid, &mut q.queue)
+            && let Some(inside) = q.paths.next(solid, sample.marched, &mut q.queue)
         {
-            let marched = within.as_ref().filter(|_| inside).unwrap_or(solid);
-            let (queue, memory) = q.split();
-            q.counts.march += closest(s, &plan, marched, queue, memory);
-            self.surfaces(s, marched, false, q);
+            let field = within.as_ref().filter(|_| inside).unwrap_or(solid);
+            // rays inside clear bodies are among all that there is
+            let marched = if inside { field } else { sample.marched };
+            follow(s, &plan, marched, q, |_| first_lanes(s, S::f32s::LEN));
+            self.surfaces(s, field, false, q);
             let marked = marked.as_ref().filter(|_| inside).unwrap_or(solid);
             self.identify(s, marked, q);
             integrator.integrate(s, sample, q);
@@ -486,4 +511,21 @@ impl<'a> Job<'a> {
             }
         }
     }
+}
+
+/// Finds what the rays of the queue meet first. `exists` says which of them are there.
+fn follow<S: Simd>(
+    s: S,
+    plan: &Plan,
+    solid: &Solid<'_>,
+    q: &mut Scratch,
+    exists: impl Fn(usize) -> LaneMask<S>,
+) {
+    if !solid.closed.is_empty() {
+        limit(s, solid.closed, solid, &mut q.queue, exists);
+    }
+    let (queue, memory) = q.split();
+    q.counts.march += closest(s, plan, solid, queue, memory);
+    let steps = plan.steps.then_some(&*q.steps);
+    land(s, &mut q.queue, steps, &mut q.hits);
 }

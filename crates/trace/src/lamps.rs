@@ -189,7 +189,7 @@ fn find<S: Simd>(s: S, sample: &TileSample<'_>, shadow: Shadow, q: &mut Scratch)
             towards: &towards,
             distance: Distance::Stored(&distance),
         };
-        q.counts.shadow += from_hits(s, Hard, &aim, sample.solid, all, q);
+        q.counts.shadow += from_hits(s, Hard, &aim, sample.marched, all, q);
         (q.aim.to, q.aim.distance) = (towards, distance);
     }
     if !sample.job.is_path() {

@@ -30,6 +30,8 @@
 mod ao;
 pub mod bench;
 mod bracket;
+pub mod certify;
+mod closed;
 mod closest;
 mod cone;
 mod coverage;

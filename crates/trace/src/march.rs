@@ -161,7 +161,10 @@ fn begin<S: Simd, M: Marcher>(
     rays: &mut Rays,
 ) {
     let (at, n, spans) = (range.start, rays.count, &queue.spans);
-    let (start, end) = (load(s, &spans.start, at), load(s, &spans.end, at));
+    let (start, mut end) = (load(s, &spans.start, at), load(s, &spans.end, at));
+    if queue.limited {
+        end = end.min(load(s, &queue.limit, at));
+    }
     let new = Chosen::new(start.below(end) & first_lanes(s, range.len()));
     if new.none() {
         return;

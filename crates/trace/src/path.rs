@@ -174,7 +174,7 @@ fn look<S: Simd>(s: S, sample: &TileSample<'_>, light: &Light, number: u32, q: &
     q.counts.shadow += match light.shadow {
         Shadow::None => unshadowed(s, light, q),
         Shadow::Hard | Shadow::Soft { .. } | Shadow::SoftClosest { .. } => {
-            from_hits(s, Hard, &aim, sample.solid, all, q)
+            from_hits(s, Hard, &aim, sample.marched, all, q)
         }
     };
     for i in 0..q.hits.count {

@@ -119,10 +119,16 @@ impl Paths {
         self.waiting[0].push(path);
     }
 
-    /// Fills the queue with rays that wait, as many as it holds, all of them inside clear bodies or none. Gives whether they are inside;
+    /// Fills the queue with rays that wait, as many as it holds, all of them inside clear bodies or none (these go through `outside`). Gives whether they are inside;
     /// none where no ray waits.
-    pub(crate) fn next(&mut self, solid: &Solid<'_>, queue: &mut Queue) -> Option<bool> {
+    pub(crate) fn next(
+        &mut self,
+        solid: &Solid<'_>,
+        outside: &Solid<'_>,
+        queue: &mut Queue,
+    ) -> Option<bool> {
         let inside = self.waiting[1].len() > self.waiting[0].len();
+        let solid = if inside { solid } else { outside };
         let waiting = &mut self.waiting[usize::from(inside)];
         let from = waiting.len().saturating_sub(TILE_RAYS);
         self.followed.clear();

@@ -155,6 +155,10 @@ pub(crate) struct Queue {
     pub(crate) rays: RayColumns<Box<Sheet>>,
     /// Where they start and end, and what is known of the field there. One that ends before it starts is not followed.
     pub(crate) spans: RaySpans,
+    /// Where they meet solids in closed form, if [`Queue::limited`]: see [`crate::closed`].
+    pub(crate) limit: Box<Sheet>,
+    /// Whether rays end there.
+    pub(crate) limited: bool,
 }
 
 impl Queue {
@@ -165,6 +169,8 @@ impl Queue {
             common: Common::default(),
             rays: RayColumns::new(Sheet::boxed),
             spans: RaySpans::new(),
+            limit: Sheet::boxed(),
+            limited: false,
         }
     }
 

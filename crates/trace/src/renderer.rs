@@ -3,7 +3,7 @@
 use crate::job::Job;
 use crate::resolve::{self, ACCUMULATORS};
 use crate::stop::Stop;
-use crate::tile::{Area, HEIGHT, Scratch, WIDTH};
+use crate::tile::{Area, HEIGHT, Scratch, Solid, WIDTH};
 use fearless_simd::Level;
 use rayon::ThreadPool;
 use rayon::prelude::*;
@@ -27,12 +27,13 @@ use zeroset_scene::render::{Evaluations, Observer, Prepared, RenderError, Render
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Occlusion, Settings};
 use zeroset_shade::air::Air;
+use zeroset_shade::closed::{Closing, at_eye, begin_outside};
 use zeroset_shade::coat::{Coat, compiled};
 use zeroset_shade::environment::EnvironmentMap;
 use zeroset_shade::lamp::{self, Lamp};
 use zeroset_shade::skin::has_skins;
 use zeroset_shade::surface::BLURRED;
-use zeroset_shade::view::Region;
+use zeroset_shade::view::{Region, View};
 
 /// The CPU's renderer: sphere tracing in SIMD streams, over all threads that it is given. Clones share their threads.
 ///
@@ -134,6 +135,43 @@ pub struct Part {
     pub spent: u64,
 }
 
+/// A scene as solids in closed form and what is marched beside them.
+pub(crate) struct Beside {
+    closing: Closing,
+    cells: Option<Arc<Cells>>,
+}
+
+impl Beside {
+    fn of(scene: &Scene, limits: &Limits) -> Result<Option<Arc<Beside>>, RenderError> {
+        Ok(Closing::of(scene, limits)?.map(|closing| {
+            let cells = cells_of(scene, &closing.program);
+            Arc::new(Beside { closing, cells })
+        }))
+    }
+
+    /// What is marched in place of a solid that is all of it.
+    pub(crate) fn solid<'a>(&'a self, whole: &Solid<'a>, job: &Job<'_>) -> Solid<'a> {
+        let Closing {
+            closed,
+            program,
+            region,
+        } = &self.closing;
+        let steps = job.picture.scene.settings().max_steps;
+        Solid {
+            closed,
+            ..Solid::new(
+                (program, self.cells.as_deref()),
+                *region,
+                whole.view,
+                steps,
+                whole.skins,
+                whole.samples,
+                whole.stop,
+            )
+        }
+    }
+}
+
 /// A scene that is ready to be rendered on the CPU.
 pub struct PreparedScene {
     pub(crate) renderer: CpuRenderer,
@@ -141,7 +179,9 @@ pub struct PreparedScene {
     pub(crate) program: Program,
     /// Its cells, where it is worth while.
     cells: Option<Arc<Cells>>,
-    /// The same for rays inside clear bodies, where there are opaque ones too.
+    /// The same as solids in closed form and what is left, where there are any.
+    beside: Option<Arc<Beside>>,
+    /// The program for rays inside clear bodies, where there are opaque ones too.
     pub(crate) inside: Option<Program>,
     /// See [`Program::inside_marks`].
     pub(crate) inside_marks: Option<Program>,
@@ -179,26 +219,28 @@ pub struct PreparedScene {
 impl PreparedScene {
     fn new(renderer: CpuRenderer, scene: Arc<Scene>) -> Result<PreparedScene, RenderError> {
         let (program, region) = compiled(&scene, &renderer.limits)?;
-        let cells = cells_of(&scene, &program);
-        let environment = EnvironmentMap::renewed(None, &scene);
-        Ok(PreparedScene::of(
-            renderer,
-            scene,
+        let field = Compiled {
+            cells: cells_of(&scene, &program),
+            beside: Beside::of(&scene, &renderer.limits)?,
             program,
-            cells,
             region,
-            environment,
-        ))
+        };
+        let environment = EnvironmentMap::renewed(None, &scene);
+        Ok(PreparedScene::of(renderer, scene, field, environment))
     }
 
     fn of(
         renderer: CpuRenderer,
         scene: Arc<Scene>,
-        program: Program,
-        cells: Option<Arc<Cells>>,
-        region: Region,
+        field: Compiled,
         environment: Option<Arc<EnvironmentMap>>,
     ) -> PreparedScene {
+        let Compiled {
+            program,
+            cells,
+            beside,
+            region,
+        } = field;
         let (mut materials, mut objects) = (BTreeSet::new(), BTreeSet::new());
         for instruction in &program.structure().marks.instructions {
             match instruction.operation {
@@ -244,6 +286,7 @@ impl PreparedScene {
             inside_marks: program.inside_marks(),
             program,
             cells,
+            beside,
             region,
             material: only(&materials),
             object: only(&objects),
@@ -264,7 +307,8 @@ impl PreparedScene {
         let spare = (self.spare.lock())
             .unwrap_or_else(PoisonError::into_inner)
             .pop();
-        let mut q = spare.unwrap_or_else(|| Box::new(Scratch::new(&self.program)));
+        let beside = self.beside.as_deref().map(|b| &b.closing.program);
+        let mut q = spare.unwrap_or_else(|| Box::new(Scratch::new(&self.program, beside)));
         q.counts = Evaluations::default();
         q
     }
@@ -296,16 +340,47 @@ impl PreparedScene {
     /// The scene with cells that make tapes shorter, where it has instructions enough for them: the same picture, to the bit. They are not
     /// there by default, because sorting points by cells takes as long as shorter tapes save (docs/performance.md, "Cells").
     pub fn with_cells(self) -> PreparedScene {
-        let cells = Cells::new(&self.program, around(&self.scene)).map(Arc::new);
-        PreparedScene { cells, ..self }
+        let cells = |program| Cells::new(program, around(&self.scene)).map(Arc::new);
+        let beside = self.beside.as_ref().map(|beside| {
+            Arc::new(Beside {
+                closing: beside.closing.clone(),
+                cells: cells(&beside.closing.program),
+            })
+        });
+        PreparedScene {
+            cells: cells(&self.program),
+            beside,
+            ..self
+        }
     }
 
     /// The scene without cells: the same picture, slower or, where they were not worth while, as fast.
     pub fn without_cells(self) -> PreparedScene {
+        let beside = self.beside.as_ref().map(|beside| {
+            Arc::new(Beside {
+                closing: beside.closing.clone(),
+                cells: None,
+            })
+        });
         PreparedScene {
             cells: None,
+            beside,
             ..self
         }
+    }
+
+    /// The scene marched as a whole, floors too: the same picture, slower.
+    pub fn without_closed_forms(self) -> PreparedScene {
+        PreparedScene {
+            beside: None,
+            ..self
+        }
+    }
+
+    /// What is marched beside solids in closed form, where all rays of a picture begin outside everything.
+    pub(crate) fn beside(&self, view: &View) -> Option<&Beside> {
+        let beside = self.beside.as_deref()?;
+        begin_outside(view, at_eye(&self.program, view)).then_some(beside)
     }
 
     /// What is marched.
@@ -379,18 +454,27 @@ impl PreparedScene {
 
 impl Prepared for PreparedScene {
     fn update(&mut self, scene: Arc<Scene>) -> Result<(), RenderError> {
-        let (program, cells, region) = if scene.has_field_of(&self.scene) {
-            (self.program.clone(), self.cells.clone(), self.region)
+        let field = if scene.has_field_of(&self.scene) {
+            Compiled {
+                program: self.program.clone(),
+                cells: self.cells.clone(),
+                beside: self.beside.clone(),
+                region: self.region,
+            }
         } else {
             let (program, region) = compiled(&scene, &self.renderer.limits)?;
-            let cells = cells_of(&scene, &program);
-            (program, cells, region)
+            Compiled {
+                cells: cells_of(&scene, &program),
+                beside: Beside::of(&scene, &self.renderer.limits)?,
+                program,
+                region,
+            }
         };
         let spare = std::mem::take(&mut self.spare);
-        let fits = program.structure() == self.program.structure();
+        let fits = field.program.structure() == self.program.structure();
         let environment = EnvironmentMap::renewed(self.environment.as_ref(), &scene);
         let renderer = self.renderer.clone();
-        *self = PreparedScene::of(renderer, scene, program, cells, region, environment);
+        *self = PreparedScene::of(renderer, scene, field, environment);
         if fits {
             self.spare = spare;
         }
@@ -441,6 +525,14 @@ impl Prepared for PreparedScene {
             Err(RenderError::Cancelled)
         }
     }
+}
+
+/// The field of a scene, as it is marched.
+struct Compiled {
+    program: Program,
+    cells: Option<Arc<Cells>>,
+    beside: Option<Arc<Beside>>,
+    region: Region,
 }
 
 /// The cells of a scene's program, where it is steep: others do not pay yet, see [`PreparedScene::with_cells`].

@@ -263,18 +263,23 @@ fn start<S: Simd, P: Penumbra<S>, D: Departures<S>>(
         q.lit,
         at,
     );
-    let begin = Chosen::new(ray.followed & exists);
+    let width = penumbra.width();
+    let limit = ray.distance.min(solid.view.far);
+    let mut followed = ray.followed & exists;
+    for form in solid.closed {
+        // what is asked is only whether anything is in the way: it is
+        followed = followed & !form.meet(ray.origin, ray.direction).below(limit);
+    }
+    let begin = Chosen::new(followed);
     if begin.none() {
         return;
     }
     let rays = &mut *q.rays;
     let n = rays.count;
-    let width = penumbra.width();
     let end = solid
         .region
         .leave(ray.origin, ray.direction, splat(s, width), offset)
-        .min(ray.distance)
-        .min(solid.view.far);
+        .min(limit);
     let ordinal = S::u32s::from_fn(
         s,
         #[inline(always)]

@@ -120,15 +120,22 @@ impl<S: Simd> Aim<S> for ToLight<'_> {
     }
 }
 
-/// Finds how much of `light` reaches every hit: 0 where the surface faces away.
-pub(crate) fn shadows<S: Simd>(s: S, solid: &Solid<'_>, light: &Light, q: &mut Scratch) {
+/// Finds how much of `light` reaches every hit: 0 where the surface faces away. Whether anything is in its way can be asked of `marched`,
+/// solids in closed form and the rest; how near a ray comes to it cannot.
+pub(crate) fn shadows<S: Simd>(
+    s: S,
+    solid: &Solid<'_>,
+    marched: &Solid<'_>,
+    light: &Light,
+    q: &mut Scratch,
+) {
     let aim = ToLight {
         source: &light.source,
     };
     let all = 0..q.hits.count;
     q.counts.shadow += match light.shadow {
         Shadow::None => unshadowed(s, light, q),
-        Shadow::Hard => from_hits(s, Hard, &aim, solid, all, q),
+        Shadow::Hard => from_hits(s, Hard, &aim, marched, all, q),
         Shadow::Soft { sharpness } => from_hits(s, Soft { sharpness }, &aim, solid, all, q),
         Shadow::SoftClosest { sharpness } => {
             from_hits(s, Closest { sharpness }, &aim, solid, all, q)

@@ -19,6 +19,7 @@ use zeroset_field::program::Program;
 use zeroset_number::{Lanes, Real, Vec3, v3};
 use zeroset_scene::progressive::CELL;
 use zeroset_scene::render::Evaluations;
+use zeroset_shade::closed::Closed;
 use zeroset_shade::view::{Region, View};
 
 /// Pixels of a tile from left to right.
@@ -81,6 +82,8 @@ pub(crate) struct Solid<'a> {
     pub(crate) skins: bool,
     /// Rays a pixel: each stands for less of it.
     pub(crate) samples: u32,
+    /// Solids in closed form beside the program: what meets neither them nor it meets nothing.
+    pub(crate) closed: &'a [Closed],
     /// Whether to stop.
     pub(crate) stop: &'a Stop<'a>,
 }
@@ -111,6 +114,7 @@ impl<'a> Solid<'a> {
             close: program.is_close(),
             skins,
             samples,
+            closed: &[],
             stop,
         }
     }
@@ -368,10 +372,15 @@ fn sheet3() -> [Box<Sheet>; 3] {
 }
 
 impl Scratch {
-    pub(crate) fn new(program: &Program) -> Scratch {
+    /// For a program, and another one that is run beside it.
+    pub(crate) fn new(program: &Program, beside: Option<&Program>) -> Scratch {
         let row = || Row::ZERO;
+        let mut work = Workspace::new(program.values(), program.marks());
+        if let Some(beside) = beside {
+            work.make_room(beside.values());
+        }
         Scratch {
-            work: Workspace::new(program.values(), program.marks()),
+            work,
             jitter: [Sheet::boxed(), Sheet::boxed()],
             lens: [Sheet::boxed(), Sheet::boxed()],
             queue: Queue::new(),

@@ -67,6 +67,8 @@ pub(crate) enum Command {
     Render(RenderArgs),
     /// Check a scene: its objects, their bounds, what is proven about their distances, what a picture will cost
     Check(CheckArgs),
+    /// Prove a picture pixel by pixel: each ray hits where the picture says and nothing before, or meets nothing
+    Certify(CertifyArgs),
     /// Print a scene as JSON, which every command takes in place of a script
     Expand(ExpandArgs),
     /// Print a scene as one shader: WGSL, or GLSL that runs when it is pasted into Shadertoy
@@ -331,6 +333,27 @@ pub(crate) struct FieldsArgs {
     /// The name to explain. Default: list all names
     #[arg(value_name = "NAME")]
     pub name: Option<String>,
+    /// Print as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CertifyArgs {
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Size in pixels. Default: what the scene says, or 512x512
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<Size>,
+    /// A map of the verdicts: .png; green is hit, blue missed, yellow unknown, red wrong
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
+    /// Fail where less of the picture is proven
+    #[arg(long, value_name = "PERCENT", default_value_t = 0.0, value_parser = crate::values::percent)]
+    pub at_least: f64,
+    /// Threads. Default: as many as the machine has cores
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
     /// Print as JSON
     #[arg(long)]
     pub json: bool,

@@ -41,6 +41,14 @@ pub(crate) fn seconds(text: &str) -> Result<f64, &'static str> {
         .ok_or("write a number of seconds, for example 1.5")
 }
 
+/// A share of 100.
+pub(crate) fn percent(text: &str) -> Result<f64, &'static str> {
+    text.parse::<f64>()
+        .ok()
+        .filter(|x| (0.0..=100.0).contains(x))
+        .ok_or("write a number of percent, 0 to 100")
+}
+
 /// A finite number above 0.
 pub(crate) fn positive(text: &str) -> Result<f64, &'static str> {
     text.parse::<f64>()

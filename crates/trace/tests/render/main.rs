@@ -3,6 +3,8 @@
 #![allow(unreachable_pub, reason = "the modules of a test are its own")]
 
 mod cells;
+mod certify;
+mod closed;
 mod compare;
 mod coverage;
 mod edges;

@@ -1,6 +1,7 @@
 //! The commands.
 
 pub(crate) mod bake;
+pub(crate) mod certify;
 pub(crate) mod check;
 pub(crate) mod compare;
 pub(crate) mod completions;
