@@ -42,6 +42,7 @@ mod lines;
 pub mod load;
 pub mod naming;
 mod radiance;
+pub mod registers;
 pub mod report;
 mod sampled;
 pub mod starlark;

@@ -2,7 +2,9 @@
 
 use std::sync::{Arc, Mutex};
 use zeroset_catalogue::Dimension;
+use zeroset_eval::Point;
 use zeroset_field::field::{Field, Node};
+use zeroset_field::program::Program;
 use zeroset_field::sampled::Sampled;
 use zeroset_language::assets::{Assets, Shelf};
 use zeroset_language::document::Document;
@@ -10,6 +12,7 @@ use zeroset_language::files::InMemory;
 use zeroset_language::json::{expand, to_text};
 use zeroset_language::limits::Limits;
 use zeroset_language::load::{Failed, Language, Loaded, Options};
+use zeroset_number::{F64, v3};
 
 /// A cube of side 2 about the origin.
 const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n\
@@ -49,6 +52,12 @@ fn files() -> InMemory {
             b"ply\nformat ascii 1.0\nelement vertex 3\n".to_vec(),
         ),
         ("cube.vdb", CUBE.as_bytes().to_vec()),
+        (
+            "disc.vm",
+            b"# a disc\nx var-x\ny var-y\na square x\nb square y\nc add a b\nd sqrt c\nr const 0.8\nout sub d r\n".to_vec(),
+        ),
+        ("ball.vm", b"x var-x\ny var-y\nz var-z\na square x\nb square y\nc square z\nd add a b\ne add c d\nf sqrt e\nr const 0.8\nout sub f r\n".to_vec()),
+        ("broken.vm", b"x var-x\ny cbrt x\n".to_vec()),
     ])
 }
 
@@ -128,6 +137,57 @@ fn every_kind_of_file_is_a_field() {
         assert!((node(x, y) - r).abs() < 0.2, "{} for {r}", node(x, y));
     }
     assert_eq!(fields[2].facts().dimension, Dimension::Three);
+}
+
+/// Lists of operations are formulas: of the plane and of space, alone and in others, and what their distance is, is proven.
+#[test]
+fn lists_of_operations_are_formulas() {
+    let loaded = load(
+        "disc = load_vm(\"disc.vm\")\nball = load_vm(\"ball.vm\")\n\
+         show(field2d(disc, size = 2).extrude(0.5))\nshow(field(ball, size = 2))\n\
+         show(field(lambda p: max(ball(p), disc(p.zy) - 0.1), size = 2))\nshow(field(disc, bounds = ((-1, -1, 0), (1, 1, 1))))",
+    );
+    for (object, p, expected) in [
+        (0, [0.5, 0.0, 0.0], -0.3),
+        (1, [0.0, 0.6, 0.0], -0.2),
+        (1, [0.5, 0.5, 0.5], 0.75f64.sqrt() - 0.8),
+        (2, [0.6, 0.0, 0.0], -0.2),
+        (2, [0.0, 0.6, 0.75], f64::hypot(0.6, 0.75) - 0.8),
+    ] {
+        let field = &loaded.scene.objects()[object].field;
+        let program = Program::compile(field, &zeroset_field::program::Limits::default()).unwrap();
+        let at = v3(F64(p[0]), F64(p[1]), F64(p[2]));
+        let value = Point::new(program.values()).value(at).0;
+        let off = (value - expected).abs();
+        assert!(
+            off < 1e-3,
+            "object {object} at {p:?}: {value} for {expected}"
+        );
+        assert!(field.facts().slope < 1.5);
+    }
+    let limits = Limits::default();
+    for (text, wanted) in [
+        ("load_vm(\"none.vm\")", "there is no file \"none.vm\""),
+        (
+            "load_vm(\"broken.vm\")",
+            "\"broken.vm\": line 2: `cbrt` is no operation",
+        ),
+        ("load_vm(\"disc.png\")", "is not text in UTF-8"),
+        (
+            "field2d(load_vm(\"ball.vm\"))",
+            "at a point of 3 numbers, since it uses z",
+        ),
+        (
+            "field(lambda p: load_vm(\"ball.vm\")(p.x))",
+            "at a point of 3 numbers",
+        ),
+        ("field(lambda p: load_vm(\"ball.vm\")())", "takes one point"),
+        ("load_vm(\"ball.vm\")(3)", "at a point of 3 numbers"),
+        ("show(load_vm(\"ball.vm\"))", "a formula from a file"),
+    ] {
+        let said = said(text, limits);
+        assert!(said.contains(wanted), "{text}: {said}");
+    }
 }
 
 #[test]

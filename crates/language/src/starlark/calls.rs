@@ -120,9 +120,12 @@ impl<'a> Machine<'a> {
                 None => self.call_native(native, Value::None, arguments, place),
             },
             Value::Formula(function) => self.call_formula(function, &arguments, place),
-            Value::Thing(i) if matches!(self.store.thing(i), Thing::Field(_)) => {
+            Value::Thing(i)
+                if matches!(self.store.thing(i), Thing::Field(_) | Thing::Registers(_)) =>
+            {
                 match self.store.thing(i).clone() {
                     Thing::Field(field) => self.ask_field(&field, &arguments, place),
+                    Thing::Registers(list) => self.ask_registers(&list, &arguments, place),
                     _ => Ok(Value::None),
                 }
             }

@@ -5,6 +5,7 @@ use super::machine::Machine;
 use super::mistake::{Mistake, Run, mistake};
 use super::native::{Argument, Call, Given, Native, Slot, slot};
 use super::value::{Thing, Value};
+use crate::registers::Registers;
 use crate::report::Place;
 use starlark_syntax::syntax::ast::BinOp;
 use std::sync::Arc;
@@ -547,6 +548,47 @@ impl<'a> Machine<'a> {
             return Ok(Value::Float(value));
         }
         Err(mistake("the field has no value there").at(place))
+    }
+
+    /// The value of a formula from a file at a point of another one.
+    pub(crate) fn ask_registers(
+        &mut self,
+        list: &Registers,
+        arguments: &[Argument<'a>],
+        place: Place,
+    ) -> Run<Value> {
+        self.charge(list.len() as u64)?;
+        let wrong = |message: String, at: Place| {
+            let m = mistake(message);
+            m.help("hand it to field(...) or to field2d(...), or call it with their point: f(p)")
+                .at(at)
+        };
+        let [argument] = arguments else {
+            let message = "a formula from a file takes one point".to_owned();
+            return Err(wrong(message, place));
+        };
+        let wanted = if list.is_solid() { 3 } else { 2 };
+        let value = match self.formula_of([argument.value].into_iter()) {
+            Some(builder) => self
+                .operand(&builder, argument.value)?
+                .filter(|point| (wanted..=3).contains(&point.parts()))
+                .map(|point| (list.write(&builder, &point), builder)),
+            None => None,
+        };
+        let Some((value, builder)) = value else {
+            let kind = self.store.kind(argument.value);
+            let axes = if list.is_solid() {
+                ", since it uses z"
+            } else {
+                ""
+            };
+            let message = format!(
+                "a formula from a file is asked at a point of {wanted} numbers{axes}; this is {kind}"
+            );
+            return Err(wrong(message, argument.place));
+        };
+        builder.check().map_err(|e| told(&e).at(place))?;
+        self.formula_value(value)
     }
 
     /// `rotate(p, axis, theta)`, or `rotate(p, theta)` of a vector of 2.

@@ -3,8 +3,11 @@
 use super::fields;
 use super::mistake::{Run, mistake};
 use super::native::{Call, Native, slot};
-use super::value::Value;
+use super::value::{Thing, Value};
+use crate::files;
+use crate::registers::Registers;
 use crate::sampled::{self, SIGNS};
+use std::sync::Arc;
 use zeroset_catalogue::{LARGE, SMALL};
 use zeroset_field::field::Field;
 use zeroset_field::sampled::Source;
@@ -66,6 +69,18 @@ pub(crate) const ALL: &[Native] = &[
         rest: false,
         run: image_shape,
     },
+    Native {
+        name: "load_vm",
+        doc: "A formula from a list of operations, for field(...) and field2d(...).",
+        group: GROUP,
+        params: &[slot(
+            "file",
+            "",
+            "A .vm file in the scene's folder, as MPR and Fidget have them.",
+        )],
+        rest: false,
+        run: load_vm,
+    },
 ];
 
 fn mesh(c: &mut Call<'_, '_>) -> Run<Value> {
@@ -83,6 +98,21 @@ fn image_shape(c: &mut Call<'_, '_>) -> Run<Value> {
     let width = c.number_or("width", 1.0, SMALL, LARGE)?;
     let level = c.number_or("level", 0.5, 0.001, 0.999)?;
     of_file(c, |file| Source::Image { file, width, level })
+}
+
+fn load_vm(c: &mut Call<'_, '_>) -> Run<Value> {
+    let given = c.need("file")?;
+    let file = c.text("file", given)?.to_string();
+    let most = c.machine.limits.file_bytes;
+    let told = |reason: String| mistake(reason).at(given.place);
+    let bytes = (c.machine.draft.files)
+        .read(&file, most, "file_bytes")
+        .map_err(|e| told(e.to_string()))?;
+    c.machine.charge(bytes.len() as u64 / 16)?;
+    let text = files::text(bytes.to_vec(), &file).map_err(|e| told(e.to_string()))?;
+    let list = Registers::parse(&text).map_err(|e| told(format!("\"{file}\": {e}")))?;
+    c.machine.grow(list.len() * size_of::<[f64; 3]>())?;
+    Ok(c.machine.charged_thing(Thing::Registers(Arc::new(list))))
 }
 
 fn of_file(c: &mut Call<'_, '_>, source: impl FnOnce(String) -> Source) -> Run<Value> {

@@ -5,6 +5,7 @@
 //! known before they are made.
 
 use super::native::Native;
+use crate::registers::Registers;
 use indexmap::IndexMap;
 use std::sync::Arc;
 use zeroset_catalogue::entries::{JoinEntry, MapEntry, ModifyEntry, PrimitiveEntry};
@@ -66,6 +67,8 @@ pub(crate) enum Thing {
     Expression(Expression),
     /// A condition on the point of a formula: 1 where it holds, else 0.
     Condition(Expression),
+    /// A formula from a file.
+    Registers(Arc<Registers>),
 }
 
 impl Thing {
@@ -84,6 +87,7 @@ impl Thing {
             Thing::Orthographic(_) => "an orthographic lens",
             Thing::Expression(_) => "a value of a formula",
             Thing::Condition(_) => "a condition on the point of a formula",
+            Thing::Registers(_) => "a formula from a file",
         }
     }
 
