@@ -257,7 +257,7 @@ mod tests {
     #[test]
     fn a_list_is_its_formula() {
         let circle = "# a circle\nx var-x\ny var-y\n\nxx square x\nyy mul y y # another way\nrr add xx yy\nr sqrt rr\nhalf const 0.5\nout sub r half";
-        for p in [[0.3, 0.4, 2.0], [0.0, 0.0, 0.0], [-3.0, 1.5, 0.1]] {
+        for p in [[0.3f64, 0.4, 2.0], [0.0, 0.0, 0.0], [-3.0, 1.5, 0.1]] {
             let expected = (p[0] * p[0] + p[1] * p[1]).sqrt() - 0.5;
             assert!((value(circle, p) - expected).abs() < 1e-12);
         }

@@ -2,9 +2,7 @@
 
 use std::sync::{Arc, Mutex};
 use zeroset_catalogue::Dimension;
-use zeroset_eval::Point;
 use zeroset_field::field::{Field, Node};
-use zeroset_field::program::Program;
 use zeroset_field::sampled::Sampled;
 use zeroset_language::assets::{Assets, Shelf};
 use zeroset_language::document::Document;
@@ -148,23 +146,27 @@ fn lists_of_operations_are_formulas() {
          show(field(lambda p: max(ball(p), disc(p.zy) - 0.1), size = 2))\nshow(field(disc, bounds = ((-1, -1, 0), (1, 1, 1))))",
     );
     for (object, p, expected) in [
-        (0, [0.5, 0.0, 0.0], -0.3),
         (1, [0.0, 0.6, 0.0], -0.2),
         (1, [0.5, 0.5, 0.5], 0.75f64.sqrt() - 0.8),
         (2, [0.6, 0.0, 0.0], -0.2),
         (2, [0.0, 0.6, 0.75], f64::hypot(0.6, 0.75) - 0.8),
+        (3, [0.5, 0.0, 0.7], -0.3),
     ] {
         let field = &loaded.scene.objects()[object].field;
-        let program = Program::compile(field, &zeroset_field::program::Limits::default()).unwrap();
-        let at = v3(F64(p[0]), F64(p[1]), F64(p[2]));
-        let value = Point::new(program.values()).value(at).0;
+        let Node::Formula(formula) = field.node() else {
+            panic!("{:?}", field.node());
+        };
+        let value = formula.eval(v3(F64(p[0]), F64(p[1]), F64(p[2]))).0;
         let off = (value - expected).abs();
         assert!(
-            off < 1e-3,
+            off < 1e-9,
             "object {object} at {p:?}: {value} for {expected}"
         );
-        assert!(field.facts().slope < 1.5);
+        assert!(formula.is_proven() && formula.slope() < 1.5);
     }
+    let disc = &loaded.scene.objects()[0].field;
+    assert_eq!(disc.facts().dimension, Dimension::Three);
+    assert!(disc.facts().bounds.is_finite());
     let limits = Limits::default();
     for (text, wanted) in [
         ("load_vm(\"none.vm\")", "there is no file \"none.vm\""),

@@ -115,10 +115,10 @@ impl PreparedScene {
 }
 
 /// Proves pixels of a row.
-struct Prover<'a> {
+pub(crate) struct Prover<'a> {
     scene: &'a PreparedScene,
     view: &'a View,
-    isolation: Isolation<'a>,
+    pub(crate) isolation: Isolation<'a>,
 }
 
 /// What was shown of a part of a ray.
@@ -133,7 +133,7 @@ enum Shown {
 }
 
 impl<'a> Prover<'a> {
-    fn new(scene: &'a PreparedScene, view: &'a View) -> Self {
+    pub(crate) fn new(scene: &'a PreparedScene, view: &'a View) -> Self {
         Prover {
             scene,
             view,
@@ -141,7 +141,8 @@ impl<'a> Prover<'a> {
         }
     }
 
-    fn verdict(&mut self, x: f32, y: f32, depth: Option<f32>) -> Verdict {
+    /// What is known of the ray through a place of the picture, in pixels, that ends at a depth or meets nothing.
+    pub(crate) fn verdict(&mut self, x: f32, y: f32, depth: Option<f32>) -> Verdict {
         if self.isolation.is_chaotic() {
             return Verdict::Unknown;
         }

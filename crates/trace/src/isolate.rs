@@ -198,10 +198,15 @@ impl<'p> Isolation<'p> {
 
     /// The distance to the surface at `t`, about: the value over the length of the gradient.
     pub(crate) fn distance(&mut self, line: &Line, t: f32) -> f32 {
+        let value = self.value(line, f64::from(t)).abs();
+        (value / self.slope(line, f64::from(t)).max(1e-30)) as f32
+    }
+
+    /// The length of the gradient at `t`.
+    pub(crate) fn slope(&mut self, line: &Line, t: f64) -> f64 {
         self.evaluations += 1;
-        let f = (self.gradients).value(Dual::point(line.at(f64::from(t))));
-        let slope = f.d.iter().map(|d| d.0 * d.0).sum::<f64>().sqrt();
-        (f.v.0.abs() / slope.max(1e-30)) as f32
+        let f = (self.gradients).value(Dual::point(line.at(t)));
+        f.d.iter().map(|d| d.0 * d.0).sum::<f64>().sqrt()
     }
 
     /// The first place between `start` and `end` where the field is behind the surface, beyond rounding and for longer than

@@ -58,6 +58,7 @@ mod stop;
 mod surface;
 mod tile;
 mod whitted;
+pub mod why;
 
 pub use query::{Hit, QueryError, Ray};
 pub use renderer::{CpuRenderer, Part, PreparedScene, sums};

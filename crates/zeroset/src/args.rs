@@ -69,6 +69,8 @@ pub(crate) enum Command {
     Check(CheckArgs),
     /// Prove a picture pixel by pixel: each ray hits where the picture says and nothing before, or meets nothing
     Certify(CertifyArgs),
+    /// Say why a pixel shows what it shows: its ray step by step, what sets each step, what is proven, what to do
+    Why(WhyArgs),
     /// Print a scene as JSON, which every command takes in place of a script
     Expand(ExpandArgs),
     /// Print a scene as one shader: WGSL, or GLSL that runs when it is pasted into Shadertoy
@@ -333,6 +335,24 @@ pub(crate) struct FieldsArgs {
     /// The name to explain. Default: list all names
     #[arg(value_name = "NAME")]
     pub name: Option<String>,
+    /// Print as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct WhyArgs {
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Column of the pixel, from the left, beginning with 0
+    #[arg(value_name = "X")]
+    pub x: u32,
+    /// Row of the pixel, from above, beginning with 0
+    #[arg(value_name = "Y")]
+    pub y: u32,
+    /// Size of the picture in pixels. Default: what the scene says, or 512x512
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<Size>,
     /// Print as JSON
     #[arg(long)]
     pub json: bool,

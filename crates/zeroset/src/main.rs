@@ -99,6 +99,7 @@ fn run(command: &Command, console: &Console) -> Result<(), Failure> {
         #[cfg(feature = "shaders")]
         Command::Export(args) => command::export::run(args, console),
         Command::Slice(args) => command::slice::run(args, console),
+        Command::Why(args) => command::why::run(args, console),
         Command::Fields(args) => command::fields::run(args, console),
         Command::FitAo(args) => command::fit_ao::run(args, console),
         Command::Bake(args) => command::bake::run(args, console),

@@ -5,6 +5,7 @@ use zeroset_language::load::{Language, Options, load_text};
 use zeroset_scene::film::{Film, Plane};
 use zeroset_scene::render::Silent;
 use zeroset_trace::certify::{Certificate, Verdict};
+use zeroset_trace::why::End;
 use zeroset_trace::{CpuRenderer, PreparedScene};
 
 const SIZE: [u32; 2] = [80, 60];
@@ -124,5 +125,49 @@ fn a_picture_that_lies_is_refused() {
     assert_eq!(
         farther.count(Verdict::Wrong),
         honest.count(Verdict::Hit) + honest.count(Verdict::Unknown)
+    );
+}
+
+/// The steps of a ray are those of Hart's march towards a ball: each as long as the distance, which a formula gives.
+#[test]
+fn a_pixel_is_explained() {
+    let balls = "show(sphere(1), name = \"ball\")\nshow(sphere(0.3).move((0, 1.6, 0)), name = \"moon\")\n\
+        camera(eye = (0, 0, 4), fov = 40)\nrender(aa = none())";
+    let scene = prepared(balls);
+    let distance = |p: [f64; 3]| {
+        let ball = |y: f64, r: f64| (p[0] * p[0] + (p[1] - y).powi(2) + p[2] * p[2]).sqrt() - r;
+        ball(0.0, 1.0).min(ball(1.6, 0.3))
+    };
+    for (pixel, end, verdict, object) in [
+        ([40, 30], End::Surface, Verdict::Hit, Some(0)),
+        ([40, 2], End::Surface, Verdict::Hit, Some(1)),
+        ([0, 0], End::Left, Verdict::Miss, None),
+    ] {
+        let why = scene.why(SIZE, pixel, 1000);
+        assert_eq!((why.end, why.verdict), (end, verdict), "{pixel:?}");
+        assert_eq!(why.hit.and_then(|hit| hit.object), object, "{pixel:?}");
+        assert!(!why.steps.is_empty() && !why.inside);
+        let mut t = 0.0;
+        for step in &why.steps {
+            let at = |k: usize| f64::from(why.origin[k]) + f64::from(why.direction[k]) * step.t;
+            let expected = distance([at(0), at(1), at(2)]);
+            assert!((step.t - t).abs() < 1e-9);
+            assert!(
+                (step.value - expected).abs() < 1e-6,
+                "{step:?} for {expected}"
+            );
+            assert!((step.slope - 1.0).abs() < 1e-6);
+            t += step.value;
+        }
+        if let (Some(hit), Some(last)) = (why.hit, why.steps.last()) {
+            assert!((f64::from(hit.t) - last.t).abs() < why.footprint);
+            assert_eq!(last.object, object);
+        }
+    }
+    assert_eq!(scene.why(SIZE, [40, 30], 1).end, End::Steps);
+    let within = prepared("show(sphere(1))\ncamera(eye = (0, 0, 0.5))").why(SIZE, [3, 4], 1000);
+    assert!(
+        within.inside && within.verdict == Verdict::Hit,
+        "{within:?}"
     );
 }

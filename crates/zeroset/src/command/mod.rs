@@ -16,3 +16,4 @@ pub(crate) mod init;
 pub(crate) mod slice;
 #[cfg(feature = "window")]
 pub(crate) mod view;
+pub(crate) mod why;

@@ -97,6 +97,7 @@ fn a_scene_that_cannot_be_read_is_no_wrong_scene() {
         "check",
         "expand",
         "slice",
+        "certify",
         "export --wgsl",
         "render --watch",
     ] {

@@ -237,6 +237,9 @@ fn nothing_that_a_script_says_reaches_a_terminal() {
         "check scene.star --json",
         "render scene.star --size 4x4 -v",
         "slice scene.star --size 4x4",
+        "why scene.star 1 1 --size 4x4",
+        "why scene.star 1 1 --size 4x4 --json",
+        "certify scene.star --size 4x4",
         "expand scene.star",
         "export scene.star --glsl",
     ];

@@ -12,6 +12,7 @@ mod frames;
 mod hostile;
 mod language;
 mod limit;
+mod proof;
 mod reference;
 mod render;
 mod run;
