@@ -51,6 +51,7 @@ fn reads_distances(scene: &Scene) -> bool {
         | Occlusion::Quilez { .. }
         | Occlusion::Bent { .. }
         | Occlusion::Evans { .. }
+        | Occlusion::Skylight { .. }
         | Occlusion::Upward { .. }
         | Occlusion::Hemisphere { .. }
         | Occlusion::Obscurance { .. } => false,

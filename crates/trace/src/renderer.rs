@@ -31,6 +31,7 @@ use zeroset_shade::coat::{Coat, compiled};
 use zeroset_shade::environment::EnvironmentMap;
 use zeroset_shade::lamp::{self, Lamp};
 use zeroset_shade::skin::has_skins;
+use zeroset_shade::skylight::SkyVolume;
 use zeroset_shade::surface::BLURRED;
 use zeroset_shade::view::Region;
 
@@ -96,6 +97,17 @@ impl CpuRenderer {
         PreparedScene::new(self.clone(), scene)
     }
 
+    /// See [`SkyVolume::renewed`]: on the threads of this renderer.
+    fn sky(
+        &self,
+        before: Option<&Arc<SkyVolume>>,
+        scene: &Scene,
+        program: &Program,
+    ) -> Result<Option<Arc<SkyVolume>>, RenderError> {
+        let make = || SkyVolume::renewed(before, scene, program);
+        Ok(self.pool.install(make)?)
+    }
+
     /// Bytes that a picture of the scene takes while these planes are rendered, apart from the scene itself.
     pub fn memory(&self, scene: &Scene, planes: &[Plane]) -> u64 {
         let size = scene.settings().size;
@@ -157,6 +169,8 @@ pub struct PreparedScene {
     pub(crate) air: Air<f32>,
     /// Light from all around, by an image.
     pub(crate) environment: Option<Arc<EnvironmentMap>>,
+    /// The volume that skylight is read from, where a method does that.
+    pub(crate) sky: Option<Arc<SkyVolume>>,
     /// The lamps that rays may meet.
     pub(crate) lamps: Vec<Lamp<f32>>,
     /// Whether rays go on from any material.
@@ -181,23 +195,24 @@ impl PreparedScene {
         let (program, region) = compiled(&scene, &renderer.limits)?;
         let cells = cells_of(&scene, &program);
         let environment = EnvironmentMap::renewed(None, &scene);
+        let sky = renderer.sky(None, &scene, &program)?;
         Ok(PreparedScene::of(
             renderer,
             scene,
-            program,
-            cells,
+            (program, cells),
             region,
             environment,
+            sky,
         ))
     }
 
     fn of(
         renderer: CpuRenderer,
         scene: Arc<Scene>,
-        program: Program,
-        cells: Option<Arc<Cells>>,
+        (program, cells): (Program, Option<Arc<Cells>>),
         region: Region,
         environment: Option<Arc<EnvironmentMap>>,
+        sky: Option<Arc<SkyVolume>>,
     ) -> PreparedScene {
         let (mut materials, mut objects) = (BTreeSet::new(), BTreeSet::new());
         for instruction in &program.structure().marks.instructions {
@@ -237,6 +252,7 @@ impl PreparedScene {
             air: Air::of(scene.sky(), scene.lights()),
             lamps: lamp::visible(scene.lights()),
             environment,
+            sky,
             renderer,
             skins: has_skins(&scene, &program),
             scene,
@@ -257,6 +273,11 @@ impl PreparedScene {
     /// Whether rays may meet lights that are looked for too.
     pub(crate) fn meets_lights(&self) -> bool {
         !self.lamps.is_empty() || self.environment.is_some()
+    }
+
+    /// Whether the sky's light has the colours of what is near.
+    pub(crate) fn is_tinted(&self) -> bool {
+        self.sky.as_ref().is_some_and(|sky| sky.is_coloured)
     }
 
     /// Memory for a tile.
@@ -386,11 +407,12 @@ impl Prepared for PreparedScene {
             let cells = cells_of(&scene, &program);
             (program, cells, region)
         };
-        let spare = std::mem::take(&mut self.spare);
         let fits = program.structure() == self.program.structure();
         let environment = EnvironmentMap::renewed(self.environment.as_ref(), &scene);
         let renderer = self.renderer.clone();
-        *self = PreparedScene::of(renderer, scene, program, cells, region, environment);
+        let sky = renderer.sky(self.sky.as_ref(), &scene, &program)?;
+        let spare = std::mem::take(&mut self.spare);
+        *self = PreparedScene::of(renderer, scene, (program, cells), region, environment, sky);
         if fits {
             self.spare = spare;
         }

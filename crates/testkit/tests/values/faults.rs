@@ -7,6 +7,7 @@ use zeroset::gpu::testing;
 use zeroset::scene::accumulator::Accumulator;
 use zeroset::scene::light::Source;
 use zeroset::scene::material::{Image, Pattern};
+use zeroset::scene::methods::{Choice, Value};
 use zeroset::scene::render::Silent;
 use zeroset::scene::scene::{Scene, SceneParts};
 use zeroset::scene::settings::{Antialias, Filter, Shadow};
@@ -70,11 +71,18 @@ fn with_filter(scene: &mut SceneParts, other: Filter) {
     }
 }
 
+fn skylight(scene: &mut SceneParts, param: &str, times: f32) {
+    let method = &mut scene.settings.occlusion;
+    if let Some(Value::Real(x)) = method.get(param) {
+        method.put(param, Value::Real(x * times));
+    }
+}
+
 /// What is wrong, how, and the check that must notice.
 type SceneFault = (&'static str, fn(&mut SceneParts), &'static str);
 
 /// Faults of renderers that a changed scene stands for.
-const IN_SCENES: [SceneFault; 22] = [
+const IN_SCENES: [SceneFault; 25] = [
     ("checkers inside out", inside_out, "checker"),
     ("stripes inside out", inside_out, "stripes"),
     ("stripes inside out", inside_out, "slanted stripes"),
@@ -143,6 +151,21 @@ const IN_SCENES: [SceneFault; 22] = [
         "a hard shadow of the sun",
     ),
     (
+        "skylight that is too strong",
+        |s| skylight(s, "strength", 1.03),
+        "skylight under a ball",
+    ),
+    (
+        "a way that bends too far",
+        |s| skylight(s, "bend", 1.1),
+        "where skylight comes from",
+    ),
+    (
+        "colours that count for more",
+        |s| skylight(s, "bleed", 1.05),
+        "light beside a red wall",
+    ),
+    (
         "a softer shadow",
         |s| s.lights[0].shadow = Shadow::SoftClosest { sharpness: 1.8 },
         "a soft shadow without bands",
@@ -187,7 +210,7 @@ fn faults_in_scenes_are_noticed() {
 
 /// What is wrong, in the text of which shader how, and the check that must notice. Formulas are recorded from those of the CPU:
 /// these faults are in how shaders call them, or in their numbers.
-const IN_SHADERS: [(&str, &str, &str, &str); 48] = [
+const IN_SHADERS: [(&str, &str, &str, &str); 55] = [
     (
         "a closest place behind the second sample",
         "closest_shadow(f, z, r, t, sharpness)",
@@ -469,6 +492,48 @@ const IN_SHADERS: [(&str, &str, &str, &str); 48] = [
         "var on = u * 2.0 - 1.0;",
         "var on = u;",
         "a rectangle of light over a floor",
+    ),
+    (
+        "samples of the finest mip alone",
+        "volume_sample(volume.grid + f32(level), volume.cells * finer + 1.0, place * finer)",
+        "volume_sample(volume.grid, volume.cells + 1.0, place)",
+        "skylight under a ball",
+    ),
+    (
+        "a volume half a voxel aside",
+        "(p - volume.origin) / volume.voxel",
+        "(p - volume.origin) / volume.voxel - 0.5",
+        "skylight under a ball",
+    ),
+    (
+        "distances that do not double",
+        "far *= 2.0;\n    }\n    let seen",
+        "far += how.reach;\n    }\n    let seen",
+        "skylight under a ball",
+    ),
+    (
+        "nodes that are mixed up",
+        "rows[1] - rows[0]) * t.y",
+        "rows[1] - rows[0]) * t.z",
+        "skylight under a ball",
+    ),
+    (
+        "a field that is not read where the volume ends",
+        "f = mix(around(at, p), f, share);",
+        "",
+        "skylight where its volume ends",
+    ),
+    (
+        "blue light beside a red wall",
+        "sums[k] +=",
+        "sums[2u - k] +=",
+        "light beside a red wall",
+    ),
+    (
+        "a sky behind the wall",
+        "skylight_bent(at.normal, way), seen.xyz",
+        "at.normal, seen.xyz",
+        "where skylight comes from",
     ),
     (
         "parallel rays that spread",

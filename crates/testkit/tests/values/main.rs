@@ -21,6 +21,7 @@ mod paths;
 mod pattern;
 mod shadow;
 mod sky;
+mod skylight;
 mod triplanar;
 mod ways;
 
@@ -34,7 +35,7 @@ use zeroset_testkit::plain::{self, Compiled, Quality};
 
 /// Every check.
 fn checks() -> Vec<Check> {
-    let groups: [&[Check]; 11] = [
+    let groups: [&[Check]; 12] = [
         &camera::CHECKS,
         &coat::CHECKS,
         &film::CHECKS,
@@ -44,6 +45,7 @@ fn checks() -> Vec<Check> {
         &pattern::CHECKS,
         &shadow::CHECKS,
         &sky::CHECKS,
+        &skylight::CHECKS,
         &triplanar::CHECKS,
         &ways::CHECKS,
     ];
