@@ -55,6 +55,7 @@ mod simd;
 mod stop;
 mod surface;
 mod tile;
+pub mod volume;
 mod whitted;
 
 pub use query::{Hit, QueryError, Ray};

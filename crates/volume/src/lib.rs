@@ -27,6 +27,7 @@
 pub mod bake;
 mod bvh;
 pub mod check;
+pub mod compose;
 mod crossing;
 pub mod file;
 pub mod mesh;

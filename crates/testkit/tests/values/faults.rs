@@ -82,7 +82,7 @@ fn skylight(scene: &mut SceneParts, param: &str, times: f32) {
 type SceneFault = (&'static str, fn(&mut SceneParts), &'static str);
 
 /// Faults of renderers that a changed scene stands for.
-const IN_SCENES: [SceneFault; 25] = [
+const IN_SCENES: [SceneFault; 22] = [
     ("checkers inside out", inside_out, "checker"),
     ("stripes inside out", inside_out, "stripes"),
     ("stripes inside out", inside_out, "slanted stripes"),
@@ -151,21 +151,6 @@ const IN_SCENES: [SceneFault; 25] = [
         "a hard shadow of the sun",
     ),
     (
-        "skylight that is too strong",
-        |s| skylight(s, "strength", 1.03),
-        "skylight under a ball",
-    ),
-    (
-        "a way that bends too far",
-        |s| skylight(s, "bend", 1.1),
-        "where skylight comes from",
-    ),
-    (
-        "colours that count for more",
-        |s| skylight(s, "bleed", 1.05),
-        "light beside a red wall",
-    ),
-    (
         "a softer shadow",
         |s| s.lights[0].shadow = Shadow::SoftClosest { sharpness: 1.8 },
         "a soft shadow without bands",
@@ -192,10 +177,38 @@ const IN_SCENES: [SceneFault; 25] = [
     ),
 ];
 
+/// The same, of skylight.
+const SKYLIGHT_IN_SCENES: [SceneFault; 3] = [
+    (
+        "skylight that is too strong",
+        |s| skylight(s, "strength", 1.03),
+        "skylight under a ball",
+    ),
+    (
+        "a way that bends too far",
+        |s| skylight(s, "bend", 1.1),
+        "where skylight comes from",
+    ),
+    (
+        "colours that count for more",
+        |s| skylight(s, "bleed", 1.05),
+        "light beside a red wall",
+    ),
+];
+
 #[test]
 fn faults_in_scenes_are_noticed() {
+    noticed_in_scenes(&IN_SCENES);
+}
+
+#[test]
+fn faults_of_skylight_in_scenes_are_noticed() {
+    noticed_in_scenes(&SKYLIGHT_IN_SCENES);
+}
+
+fn noticed_in_scenes(faults: &[SceneFault]) {
     let renderer = CpuRenderer::new(None).unwrap();
-    for (what, edit, name) in IN_SCENES {
+    for &(what, edit, name) in faults {
         let draw = |scene: &Scene| {
             let mut scene = scene.clone();
             scene.edit(edit).expect("a scene");
@@ -208,9 +221,12 @@ fn faults_in_scenes_are_noticed() {
     }
 }
 
-/// What is wrong, in the text of which shader how, and the check that must notice. Formulas are recorded from those of the CPU:
+/// What is wrong, in the text of which shader how, and the check that must notice.
+type ShaderFault = (&'static str, &'static str, &'static str, &'static str);
+
+/// Faults of shaders. Formulas are recorded from those of the CPU:
 /// these faults are in how shaders call them, or in their numbers.
-const IN_SHADERS: [(&str, &str, &str, &str); 55] = [
+const IN_SHADERS: [ShaderFault; 48] = [
     (
         "a closest place behind the second sample",
         "closest_shadow(f, z, r, t, sharpness)",
@@ -494,6 +510,16 @@ const IN_SHADERS: [(&str, &str, &str, &str); 55] = [
         "a rectangle of light over a floor",
     ),
     (
+        "parallel rays that spread",
+        "frame.right, frame.up, frame.eye), -frame.back, 1.0, 0.0);",
+        "frame.right, frame.up, frame.eye), normalize(0.1 * (frame.right * q.x + frame.up * q.y) - frame.back), 1.0, 0.0);",
+        "balls in parallel rays",
+    ),
+];
+
+/// The same, of skylight.
+const SKYLIGHT_IN_SHADERS: [ShaderFault; 7] = [
+    (
         "samples of the finest mip alone",
         "volume_sample(volume.grid + f32(level), volume.cells * finer + 1.0, place * finer)",
         "volume_sample(volume.grid, volume.cells + 1.0, place)",
@@ -535,20 +561,23 @@ const IN_SHADERS: [(&str, &str, &str, &str); 55] = [
         "at.normal, seen.xyz",
         "where skylight comes from",
     ),
-    (
-        "parallel rays that spread",
-        "frame.right, frame.up, frame.eye), -frame.back, 1.0, 0.0);",
-        "frame.right, frame.up, frame.eye), normalize(0.1 * (frame.right * q.x + frame.up * q.y) - frame.back), 1.0, 0.0);",
-        "balls in parallel rays",
-    ),
 ];
 
 #[test]
 fn faults_in_shaders_are_noticed() {
+    noticed_in_shaders(&IN_SHADERS);
+}
+
+#[test]
+fn faults_of_skylight_in_shaders_are_noticed() {
+    noticed_in_shaders(&SKYLIGHT_IN_SHADERS);
+}
+
+fn noticed_in_shaders(faults: &[ShaderFault]) {
     let Some(gpu) = testing::renderer("planted faults against known values") else {
         return;
     };
-    for (what, from, to, name) in IN_SHADERS {
+    for &(what, from, to, name) in faults {
         let planted = std::cell::Cell::new(false);
         let draw = |scene: &Scene| {
             let mut job = gpu.job(scene).expect("a job");
