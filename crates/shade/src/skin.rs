@@ -52,6 +52,7 @@ fn reads_distances(scene: &Scene) -> bool {
         | Occlusion::Bent { .. }
         | Occlusion::Evans { .. }
         | Occlusion::Skylight { .. }
+        | Occlusion::Curvature { .. }
         | Occlusion::Upward { .. }
         | Occlusion::Hemisphere { .. }
         | Occlusion::Obscurance { .. } => false,

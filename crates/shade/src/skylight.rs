@@ -153,6 +153,18 @@ pub fn light<R: Real>(sums: Vec3<R>, scale: R::Scalar) -> Vec3<R> {
     )
 }
 
+/// What a mip is off at a surface, `f`, as a shade: 0.6 where it is flat, less in creases and more on ridges. It is `0.5 + exp(k f)` (Evans 2006, 9.5, with
+/// the sign mended), of which 1.5 is flat, as a share of 2.5. `per` is k.
+#[inline(always)]
+pub fn curved<R: Real>(f: R, per: R::Scalar) -> R {
+    ((f * per).exp() + 0.5).min(2.5) * 0.4
+}
+
+/// What `f` is multiplied by in [`curved`] for a strength and a mip of a volume of such voxels.
+pub fn per_voxel(strength: f32, voxel: f32, level: usize) -> f32 {
+    strength / (voxel * (1 << level) as f32)
+}
+
 /// How open a place is that gets such light, and what the sky's light is multiplied by beside that: their product is the light.
 #[inline(always)]
 pub fn split<R: Real>(light: Vec3<R>) -> (R, Vec3<R>) {
@@ -337,6 +349,7 @@ pub fn wanted(scene: &Scene) -> Option<(u32, bool)> {
             Occlusion::Skylight {
                 resolution, bleed, ..
             } => Some((resolution, bleed > 0.0)),
+            Occlusion::Curvature { resolution, .. } => Some((resolution, false)),
             _ => None,
         })
         .reduce(|(a, x), (b, y)| (a.max(b), x || y))

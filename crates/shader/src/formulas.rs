@@ -308,6 +308,7 @@ formulas! {
     fn skylight_way(normal: Vec3, bend: Number) = skylight::way(normal, bend);
     fn skylight_bent(normal: Vec3, way: Vec3) = skylight::bent(normal, way);
     fn skylight_share(place: Vec3, cells: Vec3) = skylight::share(place, cells);
+    fn skylight_curved(f: Number, per: Number) = skylight::curved(f, per);
     fn skylight_light(sums: Vec3, scale: Number) = skylight::light(sums, scale);
     fn skylight_split(light: Vec3) = {
         let (open, tint) = skylight::split(light);

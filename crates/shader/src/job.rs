@@ -26,7 +26,7 @@ use zeroset_shade::lamp::{Lamp, Shape};
 use zeroset_shade::light::luminance;
 use zeroset_shade::pattern::{Part, PartInk, Texture};
 use zeroset_shade::skin::has_skins;
-use zeroset_shade::skylight::{Reading, SkyVolume};
+use zeroset_shade::skylight::{LEVELS, Reading, SkyVolume, per_voxel};
 use zeroset_shade::view::{Region, View};
 
 /// How the field gets into the shader.
@@ -640,6 +640,11 @@ fn occluder(method: Occlusion, voxel: f32) -> Occluder {
                 bleed: reading.bleed,
                 ..of(0, reading.first, reading.scale, reading.bend)
             }
+        }
+        Occlusion::Curvature { blur, strength, .. } => {
+            let level = blur.min(LEVELS as u32 - 1);
+            let per = per_voxel(strength, voxel, level as usize);
+            of(level, 0.0, per, 0.0)
         }
         Occlusion::Upward { scale } => of(0, 0.0, scale, 0.0),
         Occlusion::Cones { reach, steps } => of(steps, far(reach), 0.0, 0.0),

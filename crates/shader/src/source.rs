@@ -221,7 +221,7 @@ impl Key {
     pub(crate) fn reads_grids(&self) -> bool {
         let mut steps = self.structure.values.instructions.iter();
         let skylight = self.occlusion.iter().filter_map(|case| case.stage);
-        { skylight }.any(|stage| stage.name == "ao_skylight")
+        { skylight }.any(|stage| matches!(stage.name, "ao_skylight" | "ao_curvature"))
             || steps.any(|step| step.operation == Operation::Leaf(code::SAMPLED))
     }
 
@@ -867,6 +867,12 @@ fn occlusion(method: &Occlusion) -> Option<Case> {
                 "skylight_light",
                 "skylight_split",
             ],
+            false,
+        ),
+        Occlusion::Curvature { .. } => case(
+            Some(stage!("ao_curvature")),
+            "AmbientVisibility(ao_curvature(at, how), at.normal, vec3f(1.0))",
+            &["skylight_share", "skylight_curved"],
             false,
         ),
         Occlusion::Upward { .. } => case(

@@ -33,6 +33,7 @@ pub mod file;
 pub mod mesh;
 mod nearest;
 pub mod outline;
+pub mod pseudo;
 pub mod read;
 pub mod transform;
 pub mod volume;

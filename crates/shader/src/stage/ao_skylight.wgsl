@@ -1,23 +1,6 @@
 // Distances of a volume with mips along a way that bends towards the sky, and the colours of what is near (Evans 2006, 9.6, 9.9 and
 // listing 1). The twin of `ao/skylight.rs` of the CPU renderer.
 
-/// A sample of a mip of the volume, whose nodes are so many: `place` is in its voxels, within it.
-fn volume_sample(number: f32, nodes: vec3f, place: vec3f) -> f32 {
-    let p = clamp(place, vec3f(0.0), nodes - 1.0);
-    let first = min(floor(p), nodes - 2.0);
-    let t = p - first;
-    var rows: array<f32, 4>;
-    for (var k = 0u; k < 4u; k++) {
-        let node = first + vec3f(0.0, f32(k & 1u), f32(k >> 1u));
-        let a = grid_sample(number, node);
-        let b = grid_sample(number, node + vec3f(1.0, 0.0, 0.0));
-        rows[k] = a + (b - a) * t.x;
-    }
-    let near = rows[0] + (rows[1] - rows[0]) * t.y;
-    let far = rows[2] + (rows[3] - rows[2]) * t.y;
-    return near + (far - near) * t.z;
-}
-
 fn ao_skylight(at: Surface, how: Occluder) -> AmbientVisibility {
     let volume = load_skyvolume(frame.sky_rows);
     let weights = EVANS;

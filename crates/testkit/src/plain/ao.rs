@@ -62,6 +62,7 @@ impl Plain<'_> {
                     .exp()
             }
             method @ Occlusion::Skylight { .. } => return self.skylight(&mut f, at, method),
+            Occlusion::Curvature { blur, strength, .. } => self.curvature(at, blur, strength),
             Occlusion::Upward { scale } => {
                 1.0 - (scale * (1.0 - at.normal.dot(up))).clamp(0.0, 1.0)
             }

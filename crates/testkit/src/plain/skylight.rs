@@ -158,6 +158,21 @@ impl Volume {
 }
 
 impl Plain<'_> {
+    /// How a surface bends: what a mip is off there, in its voxels.
+    pub(super) fn curvature(&self, at: &Surface, blur: u32, strength: f32) -> f32 {
+        let Some(volume) = &self.sky else {
+            return 1.0;
+        };
+        let place = (at.p - Vec3::from(volume.extent.origin)) / volume.extent.voxel;
+        let cells = Vec3::from(volume.extent.cells.map(|n| n as f32));
+        let inner = (place.min(cells - place).min_element() / 8.0).clamp(0.0, 1.0);
+        let share = inner * inner * (3.0 - 2.0 * inner);
+        let wide = (1 << blur) as f32;
+        let off = share * volume.distances[blur as usize].read(place / wide);
+        let shade = 0.5 + (strength * off / (wide * volume.extent.voxel)).exp();
+        (shade / 2.5).min(1.0)
+    }
+
     /// How open a place is, where the sky is seen, and what colours its light has.
     pub(super) fn skylight(
         &self,

@@ -518,7 +518,13 @@ const IN_SHADERS: [ShaderFault; 48] = [
 ];
 
 /// The same, of skylight.
-const SKYLIGHT_IN_SHADERS: [ShaderFault; 7] = [
+const SKYLIGHT_IN_SHADERS: [ShaderFault; 8] = [
+    (
+        "ridges for creases",
+        "skylight_curved(off *",
+        "skylight_curved(-off *",
+        "curvature in a corner",
+    ),
     (
         "samples of the finest mip alone",
         "volume_sample(volume.grid + f32(level), volume.cells * finer + 1.0, place * finer)",

@@ -5,7 +5,7 @@ use crate::sky::{arriving, line};
 use glam::DVec3;
 use zeroset::scene::film::Plane;
 
-pub const CHECKS: [Check; 7] = [
+pub const CHECKS: [Check; 8] = [
     Check {
         name: "skylight on a bare floor",
         run: bare,
@@ -29,6 +29,10 @@ pub const CHECKS: [Check; 7] = [
     Check {
         name: "where skylight comes from",
         run: above,
+    },
+    Check {
+        name: "curvature in a corner",
+        run: corner,
     },
     Check {
         name: "light beside a red wall",
@@ -353,6 +357,36 @@ fn beside(draw: Draw) -> Found {
             Some(model.light(p, DVec3::Y, &how))
         })
         .map_err(|e| format!("bleed {bleed}: {e}"))?;
+    }
+    Ok(())
+}
+
+/// Two walls that meet: what their distance is off there, blurred, and nothing where they are flat.
+fn corner(draw: Draw) -> Found {
+    let wall = -0.113;
+    let around = move |p: DVec3| ((p.x - wall).min(p.y), DVec3::ONE);
+    let eye = Eye {
+        at: DVec3::new(0.2, 1.2, 0.5),
+        target: DVec3::new(-0.05, 0.0, 0.0),
+        up: DVec3::Y,
+        lens: Lens::Fov(40.0),
+        size: SIZE,
+    };
+    let text = format!("show(plane())\nshow(plane().turn(z = -90).move(x = {wall}))\n{DARK}");
+    let model = Model::new(DVec3::ZERO, DVec3::splat(eye.at.length()), &around);
+    for (blur, strength) in [(0, 4.0), (1, 3.0), (3, 6.0)] {
+        let words = format!(
+            "aa = none(), ao = curvature(resolution = 64, blur = {blur}, strength = {strength})"
+        );
+        let film = draw(&with(&text, &eye, &words));
+        let voxel = model.voxel * f64::from(1 << blur);
+        compare(&film, &eye, Plane::Occlusion, 1e-3, |x, y| {
+            let p = floor(eye.ray(x, y)).filter(|p| some(x, y) && p.x > wall + 0.02)?;
+            let of = |p: DVec3| DVec3::splat((model.around)(p).0);
+            let off = model.read(p, blur, &kernel(blur), &of).x;
+            Some(DVec3::splat((0.5 + (strength * off / voxel).exp()) / 2.5))
+        })
+        .map_err(|e| format!("blur {blur}: {e}"))?;
     }
     Ok(())
 }

@@ -60,6 +60,11 @@ pub(crate) fn occlusion<S: Simd>(
                 skylight::skylight(s, solid, volume, &reading, range, q);
             }
         }
+        Occlusion::Curvature { blur, strength, .. } => {
+            if let Some(volume) = sky {
+                skylight::curvature(s, volume, blur as usize, strength, range, q);
+            }
+        }
         Occlusion::Upward { scale } => samples::upward(s, scale, range, q),
         Occlusion::Cones { reach, steps } => cones::cones(s, solid, reach, steps, range, q),
         Occlusion::Hemisphere { rays, reach } => {

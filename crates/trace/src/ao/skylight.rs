@@ -9,7 +9,9 @@ use std::ops::Range;
 use zeroset_eval::Lane;
 use zeroset_number::{Lanes, Real, Vec3};
 use zeroset_shade::occlusion::EVANS;
-use zeroset_shade::skylight::{Reading, SkyVolume, bent, light, split, way};
+use zeroset_shade::skylight::{
+    LEVELS, Reading, SkyVolume, bent, curved, light, per_voxel, split, way,
+};
 
 /// Finds how open hits are, where the sky is seen, and what colours its light has, as [`zeroset_shade::skylight`] says.
 pub(super) fn skylight<S: Simd>(
@@ -76,6 +78,29 @@ pub(super) fn skylight<S: Simd>(
                     store3(tint, &mut hits.tint, i);
                     store3(bent(normal, way(normal, reading.bend)), &mut hits.bent, i);
                 }
+            }
+        },
+    );
+}
+
+/// Shows how a surface bends, from what a mip is off there: see [`curved`]. Where the volume ends nothing is off.
+pub(super) fn curvature<S: Simd>(
+    s: S,
+    volume: &SkyVolume,
+    level: usize,
+    strength: f32,
+    range: Range<usize>,
+    q: &mut Scratch,
+) {
+    let level = level.min(LEVELS - 1);
+    let per = per_voxel(strength, volume.extent.voxel, level);
+    s.vectorize(
+        #[inline(always)]
+        || {
+            for i in range.step_by(S::f32s::LEN) {
+                let place = volume.place(load3(s, &q.hits.point, i));
+                let off = volume.distance(level, place) * volume.share(place);
+                store(curved(off, per), &mut q.hits.open, i);
             }
         },
     );

@@ -186,9 +186,9 @@ impl Body {
             return Err(BodyError::Place(pose.position));
         }
         let [a, b, c] = pose.axes.map(|[x, y, z]| v3(x, y, z));
-        let off = |x: f32, right: f32| !((x - right).abs() < 1e-3);
-        let lengths = [a, b, c].iter().any(|v| off(v.dot(*v), 1.0));
-        if lengths || off(a.dot(b), 0.0) || off(b.dot(c), 0.0) || off(c.dot(a), 0.0) {
+        let near = |x: f32, right: f32| (x - right).abs() < 1e-3;
+        let units = [a, b, c].iter().all(|v| near(v.dot(*v), 1.0));
+        if !(units && near(a.dot(b), 0.0) && near(b.dot(c), 0.0) && near(c.dot(a), 0.0)) {
             return Err(BodyError::Axes(pose.axes));
         }
         Ok(Body {

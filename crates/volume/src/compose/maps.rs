@@ -244,7 +244,8 @@ fn check(nodes: [u32; 2], values: &[f32]) -> Result<(), BodyError> {
         let values = values.len();
         return Err(BodyError::Map { nodes, values });
     }
-    match values.iter().position(|y| !(y.abs() <= 1e9)) {
+    let is_height = |y: &f32| y.abs() <= 1e9;
+    match values.iter().position(|y| !is_height(y)) {
         Some(at) => Err(BodyError::Sample {
             at,
             value: values[at],
