@@ -42,6 +42,9 @@ pub const GRIDS: usize = LEVELS + 3 * (LEVELS - COLOURED);
 /// No sample is more voxels from zero: farther than any method reads, and where a gradient vanishes a distance may be anything.
 const FARTHEST: f32 = 2048.0;
 
+/// Instructions that sampling may take, at all nodes together: a scene may come from a stranger.
+const WORK: u64 = 1 << 34;
+
 /// Where a volume lies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
@@ -187,7 +190,8 @@ pub struct SkyVolume {
 
 impl SkyVolume {
     /// That of a scene, if any of its methods reads it: the one before, if it was made of the same. Where methods ask for different
-    /// resolutions there is one volume of the highest.
+    /// resolutions there is one volume of the highest; where the field is so large that sampling it would take too long (8000 instructions
+    /// for 128 voxels), of half of it, or less.
     ///
     /// # Errors
     /// Samples that make no grid, which no valid scene has.
@@ -199,7 +203,8 @@ impl SkyVolume {
         let Some((resolution, is_coloured)) = wanted(scene) else {
             return Ok(None);
         };
-        let extent = Extent::of(scene, resolution);
+        let instructions = program.structure().values.instructions.len();
+        let extent = Extent::of(scene, affordable(resolution, instructions));
         let colours = palette(scene, program);
         let same = |volume: &&Arc<SkyVolume>| {
             let Some((of, painted)) = &volume.made_of else {
@@ -338,6 +343,15 @@ impl SkyVolume {
         let finer = 1.0 / (1 << level) as f32;
         R::sample(&self.data, grid as f32, nodes, place * finer)
     }
+}
+
+/// The resolution that a field of so many instructions is sampled with in place of another one.
+fn affordable(mut resolution: u32, instructions: usize) -> u32 {
+    let work = |n: u32| u64::from(n).pow(3).saturating_mul(instructions as u64);
+    while resolution > 3 * MARGIN && work(resolution) > WORK {
+        resolution /= 2;
+    }
+    resolution
 }
 
 /// The resolution that a scene's methods ask for, and whether any of them reads colours.
@@ -706,6 +720,18 @@ mod tests {
                 .is_none()
         );
         volume("show(plane())\nrender(ao = skylight(resolution = 16))");
+    }
+
+    /// No stranger's field takes for ever.
+    #[test]
+    fn large_fields_are_sampled_at_fewer_places() {
+        assert_eq!(affordable(128, 8000), 128);
+        assert_eq!(affordable(256, 8000), 128);
+        assert_eq!(affordable(256, 2_500_000), 16);
+        for resolution in 16..=256 {
+            let n = u64::from(affordable(resolution, 1_000_000));
+            assert!(n <= 24 || n.pow(3) * 1_000_000 <= WORK);
+        }
     }
 
     #[test]
