@@ -1,7 +1,7 @@
 //! What formulas read beside the point they are given: numbers, and samples on grids.
 
 use super::interval::Interval;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// The data of a program: its parameters and its grids.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -56,13 +56,19 @@ pub enum GridError {
 
 /// Samples of a field at the nodes of a box, x fastest. Between the nodes a formula interpolates (`Args::sample`); a node is
 /// one unit from the next here, whatever the field's voxels measure.
-#[derive(Debug, PartialEq)]
+#[derive(Debug)]
 pub struct Grid {
     nodes: [u32; 3],
     values: Vec<f32>,
-    steepest: [f32; 3],
+    steepest: OnceLock<[f32; 3]>,
     /// Ranges over blocks of 2, 4, 8, ... nodes a side, for questions about many nodes.
-    ranges: Vec<Ranges>,
+    ranges: OnceLock<Vec<Ranges>>,
+}
+
+impl PartialEq for Grid {
+    fn eq(&self, other: &Grid) -> bool {
+        self.nodes == other.nodes && self.values == other.values
+    }
 }
 
 /// Ranges over the blocks of a grid.
@@ -81,6 +87,17 @@ impl Grid {
     /// # Errors
     /// Too few or too many nodes, another number of samples, samples that are not finite.
     pub fn new(nodes: [u32; 3], values: Vec<f32>) -> Result<Grid, GridError> {
+        let grid = Grid::of_points(nodes, values)?;
+        grid.steepest();
+        grid.ranges();
+        Ok(grid)
+    }
+
+    /// As [`Grid::new`], for a grid that is read at points alone: how steep it is and what ranges it has is not found before somebody asks.
+    ///
+    /// # Errors
+    /// As [`Grid::new`].
+    pub fn of_points(nodes: [u32; 3], values: Vec<f32>) -> Result<Grid, GridError> {
         if !nodes.iter().all(|n| (2..=Grid::MOST).contains(n)) {
             return Err(GridError::Nodes { nodes });
         }
@@ -96,15 +113,12 @@ impl Grid {
             let value = values[at];
             return Err(GridError::Value { at, value });
         }
-        let mut grid = Grid {
+        Ok(Grid {
             nodes,
             values,
-            steepest: [0.0; 3],
-            ranges: Vec::new(),
-        };
-        grid.steepest = [0, 1, 2].map(|axis| grid.steepest_along(axis));
-        grid.gather_ranges();
-        Ok(grid)
+            steepest: OnceLock::new(),
+            ranges: OnceLock::new(),
+        })
     }
 
     /// Nodes along x, y and z.
@@ -120,7 +134,12 @@ impl Grid {
     /// The largest difference between neighbours along x, y and z: what is interpolated is no steeper along that axis, since a
     /// derivative of a trilinear function lies between those along the edges of its cell.
     pub fn steepest(&self) -> [f32; 3] {
-        self.steepest
+        let find = || [0, 1, 2].map(|axis| self.steepest_along(axis));
+        *self.steepest.get_or_init(find)
+    }
+
+    fn ranges(&self) -> &[Ranges] {
+        self.ranges.get_or_init(|| self.gather_ranges())
     }
 
     /// The sample at a node; coordinates beyond the grid count as its last ones.
@@ -153,7 +172,8 @@ impl Grid {
         steepest
     }
 
-    fn gather_ranges(&mut self) {
+    fn gather_ranges(&self) -> Vec<Ranges> {
+        let mut all = Vec::new();
         let mut below: Option<Ranges> = None;
         loop {
             let from = below.as_ref().map_or(self.nodes, |r| r.blocks);
@@ -171,9 +191,10 @@ impl Grid {
                     }
                 }
             }
-            self.ranges.extend(below.replace(Ranges { blocks, ranges }));
+            all.extend(below.replace(Ranges { blocks, ranges }));
         }
-        self.ranges.extend(below);
+        all.extend(below);
+        all
     }
 
     /// The range over blocks (or nodes, without any) `first` to `last`.
@@ -199,7 +220,7 @@ impl Grid {
         let mut first = [0, 1, 2].map(|axis| held(node[axis].lo.floor(), axis));
         let mut last = [0, 1, 2].map(|axis| held(node[axis].hi.ceil(), axis));
         // as few blocks as hold the box: four a side at most
-        let mut ranges = self.ranges.iter();
+        let mut ranges = self.ranges().iter();
         let mut level = None;
         while (0..3).any(|axis| last[axis] - first[axis] >= 4) {
             let Some(above) = ranges.next() else { break };

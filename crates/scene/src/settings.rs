@@ -142,6 +142,28 @@ choice! {
             /// How far the normal bends towards the sky.
             bend: f32 = 0.5, BEND
         },
+        /// Distances of a volume with mips, read along a way that bends towards the sky.
+        Skylight("skylight", "Skylight", "Evans 2006, 9.6, 9.9 and listing 1") {
+            /// Voxels along the longest side of the volume around what has an end.
+            resolution: u32 = 128, Param::new("Resolution", Unit::Count, Allowed::between(16.0, 256.0)).usual(16.0, 256.0).logarithmic();
+            /// First distance above zero, in voxels; each of the next three is twice as far.
+            step: f32 = 2.0, Param::new("Step", Unit::Ratio, Allowed::between(0.25, 16.0)).usual(0.5, 8.0).logarithmic();
+            /// How dark closed places become: e to the power of minus this.
+            strength: f32 = 3.0, Param::new("Strength", Unit::Ratio, Allowed::between(0.0, 100.0)).usual(0.0, 8.0);
+            /// How far the normal bends towards the sky.
+            bend: f32 = 0.5, BEND;
+            /// How much of the light that near things take comes back in their colours.
+            bleed: f32 = 0.0, Param::new("Colour bleeding", Unit::Ratio, Allowed::between(0.0, 1.0))
+        },
+        /// Creases dark and ridges light, from how much a blurred volume of distances is off at the surface.
+        Curvature("curvature", "Curvature", "Evans 2006, 9.5 and figure 5") {
+            /// Voxels along the longest side of the volume around what has an end.
+            resolution: u32 = 64, Param::new("Resolution", Unit::Count, Allowed::between(16.0, 256.0)).usual(16.0, 256.0).logarithmic();
+            /// Which mip is read: each is blurred twice as far, and shows creases twice as wide.
+            blur: u32 = 1, Param::new("Blur", Unit::Count, Allowed::between(0.0, 3.0));
+            /// How much creases and ridges differ: what a distance of a voxel of that mip is multiplied by.
+            strength: f32 = 3.0, Param::new("Strength", Unit::Ratio, Allowed::between(0.0, 100.0)).usual(0.0, 10.0)
+        },
         /// From the slope of the surface alone.
         Upward("upward", "Upward", "Tomczak 2012, 4.3") {
             /// How dark surfaces that face down become.

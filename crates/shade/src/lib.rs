@@ -39,6 +39,7 @@ pub mod secondary;
 pub mod shadow;
 pub mod skin;
 pub mod sky;
+pub mod skylight;
 pub mod surface;
 pub mod tone;
 pub mod view;

@@ -51,6 +51,8 @@ fn reads_distances(scene: &Scene) -> bool {
         | Occlusion::Quilez { .. }
         | Occlusion::Bent { .. }
         | Occlusion::Evans { .. }
+        | Occlusion::Skylight { .. }
+        | Occlusion::Curvature { .. }
         | Occlusion::Upward { .. }
         | Occlusion::Hemisphere { .. }
         | Occlusion::Obscurance { .. } => false,

@@ -35,6 +35,8 @@ pub struct Lighting<R> {
     pub grazing: Vec3<R>,
     /// Ambient visibility, which scales what comes from the sky and nothing else (Tomczak 2012, equation 3.32).
     pub open: R,
+    /// What the light of the sky is multiplied by that comes to the body: the colours of things near by; 1 where they do not count.
+    pub tint: Vec3<R>,
     /// Where most of the sky is seen.
     pub bent: Vec3<R>,
     /// The normal.
@@ -142,7 +144,7 @@ fn matte<R: Real>(
     what: &LocalMaterial<R>,
     light: &Lighting<R>,
 ) -> Vec3<R> {
-    let around = ambient(sky, light.bent.y);
+    let around = ambient(sky, light.bent.y).times(light.tint);
     what.albedo.times(light.diffuse + around * light.open)
 }
 

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use zeroset_field::program::{FLAT, INSIDE_MARKS};
 use zeroset_shade::{
     air, bsdf, coverage, environment, march, occlusion, pattern, sampling, secondary, shadow, skin,
-    surface, view,
+    skylight, surface, view,
 };
 
 /// The value of a constant.
@@ -81,6 +81,8 @@ fn constants() -> Vec<(&'static str, Value)> {
         ("QUILEZ_FALL", Number(occlusion::QUILEZ_FALL)),
         ("BENT_FALL", Number(occlusion::BENT_FALL)),
         ("EVANS", Vector(&occlusion::EVANS)),
+        ("SKYLIGHT_LEVELS", Whole(skylight::LEVELS as u32)),
+        ("SKYLIGHT_COLOURED", Whole(skylight::COLOURED as u32)),
         ("CONES", Whole(occlusion::CONES as u32)),
         ("CONES_HIGH", Whole(occlusion::HIGH as u32)),
         ("CONE_COSINES", Vector(&occlusion::COSINES)),

@@ -171,6 +171,7 @@ fn body(scene: &Scene) -> Result<String, ExportError> {
         &Limits::default(),
         FieldForm::Compiled,
         around.as_deref(),
+        None,
     )?;
     let large = [
         ("instructions", parts.key.length()),

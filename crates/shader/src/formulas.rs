@@ -12,7 +12,7 @@ use zeroset_shade::surface::{self, Lighting, LocalMaterial};
 use zeroset_shade::view::{self, Linear};
 use zeroset_shade::{
     air, bsdf, environment, lamp, light, march, normal, occlusion, sampling, secondary, shadow,
-    skin, tone,
+    skin, skylight, tone,
 };
 
 /// A formula that shaders call.
@@ -245,33 +245,33 @@ formulas! {
         to: Vec3, distance: Number, kind: Number, normal: Vec3, direction: Vec3, finish: Number
     ) = response(Shading::LambertLegacy, (to, distance), kind, normal, direction, finish);
     fn surface_colour@Physical(
-        albedo: Vec3, emission: Vec3, finish: Vec4, diffuse: Vec3, gloss: Vec3, grazing: Vec3, open: Number, bent: Vec3,
+        albedo: Vec3, emission: Vec3, finish: Vec4, diffuse: Vec3, gloss: Vec3, grazing: Vec3, open: Number, tint: Vec3, bent: Vec3,
         normal: Vec3, direction: Vec3, horizon: Vec3, top: Vec3, bottom: Vec3, ambient: Number, followed: Number
     ) = surface::colour(
         Shading::Physical,
         &SkyColours { top, horizon, bottom, ambient },
         &material(albedo, emission, finish),
-        &Lighting { diffuse, gloss, grazing, open, bent, normal, direction },
+        &Lighting { diffuse, gloss, grazing, open, tint, bent, normal, direction },
         followed,
     );
     fn surface_colour@Phong(
-        albedo: Vec3, emission: Vec3, finish: Vec4, diffuse: Vec3, gloss: Vec3, grazing: Vec3, open: Number, bent: Vec3,
+        albedo: Vec3, emission: Vec3, finish: Vec4, diffuse: Vec3, gloss: Vec3, grazing: Vec3, open: Number, tint: Vec3, bent: Vec3,
         normal: Vec3, direction: Vec3, horizon: Vec3, top: Vec3, bottom: Vec3, ambient: Number, followed: Number
     ) = surface::colour(
         Shading::Phong,
         &SkyColours { top, horizon, bottom, ambient },
         &material(albedo, emission, finish),
-        &Lighting { diffuse, gloss, grazing, open, bent, normal, direction },
+        &Lighting { diffuse, gloss, grazing, open, tint, bent, normal, direction },
         followed,
     );
     fn surface_colour@Lambert(
-        albedo: Vec3, emission: Vec3, finish: Vec4, diffuse: Vec3, gloss: Vec3, grazing: Vec3, open: Number, bent: Vec3,
+        albedo: Vec3, emission: Vec3, finish: Vec4, diffuse: Vec3, gloss: Vec3, grazing: Vec3, open: Number, tint: Vec3, bent: Vec3,
         normal: Vec3, direction: Vec3, horizon: Vec3, top: Vec3, bottom: Vec3, ambient: Number, followed: Number
     ) = surface::colour(
         Shading::Lambert,
         &SkyColours { top, horizon, bottom, ambient },
         &material(albedo, emission, finish),
-        &Lighting { diffuse, gloss, grazing, open, bent, normal, direction },
+        &Lighting { diffuse, gloss, grazing, open, tint, bent, normal, direction },
         followed,
     );
     fn mirror_reflectance(albedo: Vec3, finish: Vec4, cosine: Number) =
@@ -305,6 +305,15 @@ formulas! {
     // occlusion
     fn visibility(sum: Number, scale: Number) = occlusion::visibility(sum, scale);
     fn exponential_visibility(sum: Number, scale: Number) = occlusion::exponential_visibility(sum, scale);
+    fn skylight_way(normal: Vec3, bend: Number) = skylight::way(normal, bend);
+    fn skylight_bent(normal: Vec3, way: Vec3) = skylight::bent(normal, way);
+    fn skylight_share(place: Vec3, cells: Vec3) = skylight::share(place, cells);
+    fn skylight_curved(f: Number, per: Number) = skylight::curved(f, per);
+    fn skylight_light(sums: Vec3, scale: Number) = skylight::light(sums, scale);
+    fn skylight_split(light: Vec3) = {
+        let (open, tint) = skylight::split(light);
+        (tint, open)
+    };
     fn slant(normal: Vec3) = occlusion::slant(normal);
     fn obscurance(t: Number, tau: Number) = occlusion::obscurance(t, tau);
     fn cone_direction(k: Number) = occlusion::direction(k);

@@ -26,6 +26,7 @@ use zeroset_shade::lamp::{Lamp, Shape};
 use zeroset_shade::light::luminance;
 use zeroset_shade::pattern::{Part, PartInk, Texture};
 use zeroset_shade::skin::has_skins;
+use zeroset_shade::skylight::{LEVELS, Reading, SkyVolume, per_voxel};
 use zeroset_shade::view::{Region, View};
 
 /// How the field gets into the shader.
@@ -52,6 +53,8 @@ pub struct Shaders {
     texts: HashMap<Key, Made>,
     /// The environment of the scene before.
     around: Option<Arc<EnvironmentMap>>,
+    /// The volume of skylight of the scene before.
+    sky: Option<Arc<SkyVolume>>,
 }
 
 /// A text and what belongs to it.
@@ -109,7 +112,9 @@ impl Shaders {
     /// See [`RenderError`].
     pub fn prepare(&mut self, scene: &Scene) -> Result<Job, RenderError> {
         self.around = EnvironmentMap::renewed(self.around.as_ref(), scene);
-        let parts = Parts::new(scene, &self.limits, self.form, self.around.as_deref())?;
+        let (around, before) = (self.around.as_deref(), self.sky.as_ref());
+        let parts = Parts::new(scene, &self.limits, self.form, around, before)?;
+        self.sky = parts.sky;
         let turns = Turns(Some(parts.key.in_turns()));
         let made = self.text(parts.key);
         Ok(Job {
@@ -171,6 +176,7 @@ pub(crate) struct Parts {
     pub(crate) table: Vec<[f32; 4]>,
     pub(crate) images: Vec<Arc<Image>>,
     pub(crate) grids: Vec<Arc<Grid>>,
+    pub(crate) sky: Option<Arc<SkyVolume>>,
 }
 
 impl Parts {
@@ -179,15 +185,30 @@ impl Parts {
         limits: &Limits,
         form: FieldForm,
         around: Option<&EnvironmentMap>,
+        sky_before: Option<&Arc<SkyVolume>>,
     ) -> Result<Parts, RenderError> {
         let (program, region) = compiled(scene, limits)?;
         let mut images = images(scene);
         if let Some(around) = around {
             images.extend([&around.image, &around.table, &around.glossy].map(Arc::clone));
         }
-        let grids = program.data().grids.clone();
-        let (mut table, mut frame) =
-            tables(scene, &program, &images, &grids, frame(scene, &region));
+        let sky = SkyVolume::renewed(sky_before, scene, &program)?;
+        let mut grids = program.data().grids.clone();
+        let sky_grid = grids.len();
+        grids.extend(sky.iter().flat_map(|sky| sky.data.grids.iter().cloned()));
+        let voxel = sky.as_ref().map_or(1.0, |sky| sky.extent.voxel);
+        let (mut table, mut frame) = tables(
+            scene,
+            &program,
+            &images,
+            &grids,
+            voxel,
+            frame(scene, &region),
+        );
+        if let Some(sky) = &sky {
+            frame.sky_rows = table.len() as u32;
+            push(&mut table, sky_row(sky, sky_grid));
+        }
         if let Some(around) = around {
             frame.around_rows = table.len() as u32;
             push(&mut table, around_row(around, &images));
@@ -205,6 +226,7 @@ impl Parts {
             table,
             images,
             grids,
+            sky,
         })
     }
 }
@@ -404,6 +426,7 @@ fn tables(
     program: &Program,
     images: &[Arc<Image>],
     grids: &[Arc<Grid>],
+    voxel: f32,
     mut frame: Frame,
 ) -> (Vec<[f32; 4]>, Frame) {
     let mut table = Vec::new();
@@ -417,10 +440,13 @@ fn tables(
     for object in scene.objects() {
         push(
             &mut table,
-            occluder(object.occlusion.unwrap_or(scene.settings().occlusion)),
+            occluder(
+                object.occlusion.unwrap_or(scene.settings().occlusion),
+                voxel,
+            ),
         );
     }
-    push(&mut table, occluder(scene.settings().occlusion));
+    push(&mut table, occluder(scene.settings().occlusion, voxel));
     let places: HashMap<*const Image, u64> = (images.iter().map(Arc::as_ptr))
         .zip(texture::starts(images))
         .collect();
@@ -474,6 +500,16 @@ pub(crate) fn grid_row(grid: &Grid, start: u64) -> layout::Grid {
         nodes_y,
         row,
         column,
+    }
+}
+
+/// `grid`: the number of its first grid.
+fn sky_row(sky: &SkyVolume, grid: usize) -> layout::SkyVolume {
+    layout::SkyVolume {
+        origin: sky.extent.origin,
+        voxel: sky.extent.voxel,
+        cells: sky.extent.cells.map(|n| n as f32),
+        grid: grid as f32,
     }
 }
 
@@ -570,7 +606,8 @@ pub(crate) const LAMPS: [f32; 4] = [2.0, 3.0, 4.0, 5.0];
 /// The reach of occlusion that has none. Shaders have no infinity.
 const UNLIMITED: f32 = 3.0e38;
 
-fn occluder(method: Occlusion) -> Occluder {
+/// `voxel`: of the volume that skylight is read from.
+fn occluder(method: Occlusion, voxel: f32) -> Occluder {
     let kind = number(&method) as f32;
     let of = |count: u32, reach: f32, scale: f32, bend: f32| Occluder {
         kind,
@@ -591,6 +628,24 @@ fn occluder(method: Occlusion) -> Occluder {
             bend,
         } => of(steps, step, scale, bend),
         Occlusion::Evans { scale, step, bend } => of(4, step, scale, bend),
+        Occlusion::Skylight {
+            step,
+            strength,
+            bend,
+            bleed,
+            ..
+        } => {
+            let reading = Reading::new(voxel, step, strength, bend, bleed);
+            Occluder {
+                bleed: reading.bleed,
+                ..of(0, reading.first, reading.scale, reading.bend)
+            }
+        }
+        Occlusion::Curvature { blur, strength, .. } => {
+            let level = blur.min(LEVELS as u32 - 1);
+            let per = per_voxel(strength, voxel, level as usize);
+            of(level, 0.0, per, 0.0)
+        }
         Occlusion::Upward { scale } => of(0, 0.0, scale, 0.0),
         Occlusion::Cones { reach, steps } => of(steps, far(reach), 0.0, 0.0),
         Occlusion::Hemisphere { rays, reach } => of(rays, far(reach), 0.0, 0.0),

@@ -189,6 +189,14 @@ shared! {
         focus: f32,
         /// First row of the environment.
         around_rows: u32,
+        /// First row of the volume that skylight is read from.
+        sky_rows: u32,
+        /// Not used.
+        pad_a: u32,
+        /// Not used.
+        pad_b: u32,
+        /// Not used.
+        pad_c: u32,
     }
 
     /// What one dispatch covers.
@@ -312,12 +320,24 @@ shared! {
         scale: f32,
         /// How far the way bends.
         bend: f32,
-        /// Not used.
-        pad_a: f32,
+        /// How much farther away white things are in their own colour, scene units.
+        bleed: f32,
         /// Not used.
         pad_b: f32,
         /// Not used.
         pad_c: f32,
+    }
+
+    /// The volume that skylight is read from, as rows of the table.
+    SkyVolume {
+        /// Its first node.
+        origin: [f32; 3],
+        /// From one node to the next, scene units.
+        voxel: f32,
+        /// Voxels along each axis.
+        cells: [f32; 3],
+        /// Number of its first grid.
+        grid: f32,
     }
 
     /// A material as it lies on something, as rows of the table.

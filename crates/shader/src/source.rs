@@ -6,8 +6,8 @@ use crate::field::FieldSource;
 use crate::formulas;
 use crate::job::{FieldForm, LONGEST_COMPILED, bounces};
 use crate::layout::{
-    Around, Frame, Grid, Light, LightSum, Material, Occluder, Sample, Shared, SurfaceSum,
-    TexturePart, Tile, loader, rows,
+    Around, Frame, Grid, Light, LightSum, Material, Occluder, Sample, Shared, SkyVolume,
+    SurfaceSum, TexturePart, Tile, loader, rows,
 };
 use crate::texture;
 use std::cmp::Ordering;
@@ -217,10 +217,12 @@ impl Key {
         self.around || self.patterns.iter().any(|case| case.has_image)
     }
 
-    /// Whether the field has grids of samples.
+    /// Whether the field or the sky has grids of samples.
     pub(crate) fn reads_grids(&self) -> bool {
         let mut steps = self.structure.values.instructions.iter();
-        steps.any(|step| step.operation == Operation::Leaf(code::SAMPLED))
+        let skylight = self.occlusion.iter().filter_map(|case| case.stage);
+        { skylight }.any(|stage| matches!(stage.name, "ao_skylight" | "ao_curvature"))
+            || steps.any(|step| step.operation == Operation::Leaf(code::SAMPLED))
     }
 
     /// The same, but that rays are traced in turns.
@@ -308,6 +310,7 @@ impl Key {
             Light::declaration(),
             Occluder::declaration(),
             Around::declaration(),
+            SkyVolume::declaration(),
             Material::declaration(),
             TexturePart::declaration(),
             Sample::declaration(),
@@ -330,6 +333,7 @@ impl Key {
         text += &loader::<Material>();
         text += &loader::<TexturePart>();
         text += &loader::<Around>();
+        text += &loader::<SkyVolume>();
         if self.reads_grids() {
             text += &grids();
         }
@@ -510,7 +514,7 @@ impl Key {
             "fn occlusion(at: Surface, how: Occluder, key: vec2u) -> AmbientVisibility",
             "how.kind",
             self.occlusion.iter().map(|case| (case.kind, case.call)),
-            "AmbientVisibility(1.0, at.normal)",
+            "AmbientVisibility(1.0, at.normal, vec3f(1.0))",
         )
     }
 }
@@ -837,25 +841,43 @@ fn occlusion(method: &Occlusion) -> Option<Case> {
         Occlusion::None => None,
         Occlusion::Quilez { .. } => case(
             Some(stage!("ao_quilez")),
-            "AmbientVisibility(ao_quilez(at, how), at.normal)",
+            "AmbientVisibility(ao_quilez(at, how), at.normal, vec3f(1.0))",
             &["visibility"],
             false,
         ),
         Occlusion::Bent { .. } => case(
             Some(stage!("ao_bent")),
-            "AmbientVisibility(ao_bent(at, how), at.normal)",
+            "AmbientVisibility(ao_bent(at, how), at.normal, vec3f(1.0))",
             &["visibility"],
             false,
         ),
         Occlusion::Evans { .. } => case(
             Some(stage!("ao_evans")),
-            "AmbientVisibility(ao_evans(at, how), at.normal)",
+            "AmbientVisibility(ao_evans(at, how), at.normal, vec3f(1.0))",
             &["exponential_visibility"],
+            false,
+        ),
+        Occlusion::Skylight { .. } => case(
+            Some(stage!("ao_skylight")),
+            "ao_skylight(at, how)",
+            &[
+                "skylight_way",
+                "skylight_bent",
+                "skylight_share",
+                "skylight_light",
+                "skylight_split",
+            ],
+            false,
+        ),
+        Occlusion::Curvature { .. } => case(
+            Some(stage!("ao_curvature")),
+            "AmbientVisibility(ao_curvature(at, how), at.normal, vec3f(1.0))",
+            &["skylight_share", "skylight_curved"],
             false,
         ),
         Occlusion::Upward { .. } => case(
             None,
-            "AmbientVisibility(visibility(slant(at.normal), how.scale), at.normal)",
+            "AmbientVisibility(visibility(slant(at.normal), how.scale), at.normal, vec3f(1.0))",
             &["visibility", "slant"],
             false,
         ),
@@ -877,13 +899,13 @@ fn occlusion(method: &Occlusion) -> Option<Case> {
         ),
         Occlusion::Hemisphere { .. } => case(
             Some(stage!("ao_hemisphere")),
-            "AmbientVisibility(ao_hemisphere(at, how, key), at.normal)",
+            "AmbientVisibility(ao_hemisphere(at, how, key), at.normal, vec3f(1.0))",
             &["cosine_direction"],
             true,
         ),
         Occlusion::Obscurance { .. } => case(
             Some(stage!("ao_obscurance")),
-            "AmbientVisibility(ao_obscurance(at, how, key), at.normal)",
+            "AmbientVisibility(ao_obscurance(at, how, key), at.normal, vec3f(1.0))",
             &["cosine_direction", "obscurance"],
             true,
         ),

@@ -6,7 +6,7 @@ use crate::lamps;
 use crate::march::ORDINAL;
 use crate::order::{self, Sorting};
 use crate::shadow::shadows;
-use crate::simd::{INSIDE, load, load_words, load3, splat, store, store3};
+use crate::simd::{INSIDE, load, load_words, load3, splat, splat3, store, store3};
 use crate::surface::materials;
 use crate::tile::{Area, Hits, Scratch, Solid};
 use fearless_simd::{Simd, prelude::*};
@@ -208,7 +208,7 @@ fn occlude<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
             from += count;
             from - count..from
         });
-        ao::occlusion(s, solid, *method, found, q);
+        ao::occlusion(s, solid, *method, picture.sky.as_deref(), found, q);
         q.shared.give(&mut q.hits, given);
     }
     q.ends = ends;
@@ -221,6 +221,9 @@ fn occlude<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
     let hits = &mut q.hits;
     for i in (0..hits.count).filter(|&i| hits.word[i] & INSIDE != 0) {
         hits.open[i] = 1.0;
+        for tint in &mut hits.tint {
+            tint[i] = 1.0;
+        }
         for (bent, normal) in hits.bent.iter_mut().zip(&hits.normal) {
             bent[i] = normal[i];
         }
@@ -290,6 +293,7 @@ pub(crate) fn shade<S: Simd>(
 ) {
     let job = sample.job;
     let air = &job.picture.air;
+    let is_tinted = job.picture.is_tinted();
     // paths find it along the rays that meet nothing
     let is_surrounded = job.picture.environment.is_some() && !job.is_path();
     s.vectorize(
@@ -308,6 +312,11 @@ pub(crate) fn shade<S: Simd>(
                     gloss: load3(s, &hits.gloss, i) * shone,
                     grazing: load3(s, &hits.grazing, i) * shone,
                     open: load(s, &hits.open, i),
+                    tint: if is_tinted {
+                        load3(s, &hits.tint, i)
+                    } else {
+                        splat3(s, [1.0; 3])
+                    },
                     bent: load3(s, &hits.bent, i),
                     normal: load3(s, &hits.shown, i),
                     direction: hits.ray(s, i).direction,

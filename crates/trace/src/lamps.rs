@@ -156,7 +156,11 @@ pub(crate) fn surround(sample: &TileSample<'_>, map: &EnvironmentMap, q: &mut Sc
         let what = hits.material.get(i);
         let (n, d) = (hits.shown(i), hits.rays.get(&hits.common, i).direction);
         let [x, y, z] = &hits.bent;
-        let arriving = map.arriving(v3(x[i], y[i], z[i])) * ambient;
+        let mut arriving = map.arriving(v3(x[i], y[i], z[i])) * ambient;
+        if sample.job.picture.is_tinted() {
+            let [r, g, b] = &hits.tint;
+            arriving = arriving.times(v3(r[i], g[i], b[i]));
+        }
         let seen = map.reflected(d - n * (2.0 * n.dot(d)), what.roughness);
         let open = hits.open[i];
         let light = around(

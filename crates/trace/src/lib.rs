@@ -57,6 +57,7 @@ mod simd;
 mod stop;
 mod surface;
 mod tile;
+pub mod volume;
 mod whitted;
 pub mod why;
 

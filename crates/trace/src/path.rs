@@ -64,7 +64,7 @@ impl BounceColumns {
 impl Integrator for PathTracer {
     fn integrate<S: Simd>(&self, s: S, sample: &TileSample<'_>, q: &mut Scratch) {
         let all = 0..q.hits.count;
-        ao::occlusion(s, sample.solid, Occlusion::None, all, q);
+        ao::occlusion(s, sample.solid, Occlusion::None, None, all, q);
         materials(s, sample.job, sample.solid, q);
         q.hits.followed[..q.hits.count].fill(1.0);
         darken(q);

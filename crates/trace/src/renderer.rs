@@ -32,6 +32,7 @@ use zeroset_shade::coat::{Coat, compiled};
 use zeroset_shade::environment::EnvironmentMap;
 use zeroset_shade::lamp::{self, Lamp};
 use zeroset_shade::skin::has_skins;
+use zeroset_shade::skylight::SkyVolume;
 use zeroset_shade::surface::BLURRED;
 use zeroset_shade::view::{Region, View};
 
@@ -95,6 +96,17 @@ impl CpuRenderer {
     /// See [`RenderError`].
     pub fn prepare_scene(&self, scene: Arc<Scene>) -> Result<PreparedScene, RenderError> {
         PreparedScene::new(self.clone(), scene)
+    }
+
+    /// See [`SkyVolume::renewed`]: on the threads of this renderer.
+    fn sky(
+        &self,
+        before: Option<&Arc<SkyVolume>>,
+        scene: &Scene,
+        program: &Program,
+    ) -> Result<Option<Arc<SkyVolume>>, RenderError> {
+        let make = || SkyVolume::renewed(before, scene, program);
+        Ok(self.pool.install(make)?)
     }
 
     /// Bytes that a picture of the scene takes while these planes are rendered, apart from the scene itself.
@@ -197,6 +209,8 @@ pub struct PreparedScene {
     pub(crate) air: Air<f32>,
     /// Light from all around, by an image.
     pub(crate) environment: Option<Arc<EnvironmentMap>>,
+    /// The volume that skylight is read from, where a method does that.
+    pub(crate) sky: Option<Arc<SkyVolume>>,
     /// The lamps that rays may meet.
     pub(crate) lamps: Vec<Lamp<f32>>,
     /// Whether rays go on from any material.
@@ -226,7 +240,8 @@ impl PreparedScene {
             region,
         };
         let environment = EnvironmentMap::renewed(None, &scene);
-        Ok(PreparedScene::of(renderer, scene, field, environment))
+        let sky = renderer.sky(None, &scene, &field.program)?;
+        Ok(PreparedScene::of(renderer, scene, field, environment, sky))
     }
 
     fn of(
@@ -234,6 +249,7 @@ impl PreparedScene {
         scene: Arc<Scene>,
         field: Compiled,
         environment: Option<Arc<EnvironmentMap>>,
+        sky: Option<Arc<SkyVolume>>,
     ) -> PreparedScene {
         let Compiled {
             program,
@@ -279,6 +295,7 @@ impl PreparedScene {
             air: Air::of(scene.sky(), scene.lights()),
             lamps: lamp::visible(scene.lights()),
             environment,
+            sky,
             renderer,
             skins: has_skins(&scene, &program),
             scene,
@@ -300,6 +317,11 @@ impl PreparedScene {
     /// Whether rays may meet lights that are looked for too.
     pub(crate) fn meets_lights(&self) -> bool {
         !self.lamps.is_empty() || self.environment.is_some()
+    }
+
+    /// Whether the sky's light has the colours of what is near.
+    pub(crate) fn is_tinted(&self) -> bool {
+        self.sky.as_ref().is_some_and(|sky| sky.is_coloured)
     }
 
     /// Memory for a tile.
@@ -470,11 +492,12 @@ impl Prepared for PreparedScene {
                 region,
             }
         };
-        let spare = std::mem::take(&mut self.spare);
         let fits = field.program.structure() == self.program.structure();
         let environment = EnvironmentMap::renewed(self.environment.as_ref(), &scene);
         let renderer = self.renderer.clone();
-        *self = PreparedScene::of(renderer, scene, field, environment);
+        let sky = renderer.sky(self.sky.as_ref(), &scene, &field.program)?;
+        let spare = std::mem::take(&mut self.spare);
+        *self = PreparedScene::of(renderer, scene, field, environment, sky);
         if fits {
             self.spare = spare;
         }

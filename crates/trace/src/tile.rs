@@ -259,6 +259,8 @@ pub(crate) struct Hits {
     pub(crate) open: Box<Sheet>,
     /// Mean direction that is not occluded, normalised.
     pub(crate) bent: [Box<Sheet>; 3],
+    /// See [`zeroset_shade::surface::Lighting::tint`]; only where the scene's volume has colours.
+    pub(crate) tint: [Box<Sheet>; 3],
     /// Visibility of all lights.
     pub(crate) shadow: Box<Sheet>,
     /// What the lights would be without shadows.
@@ -438,6 +440,7 @@ impl Scratch {
                 orbit: std::array::from_fn(|_| Sheet::boxed()),
                 open: Sheet::boxed(),
                 bent: sheet3(),
+                tint: sheet3(),
                 shadow: Sheet::boxed(),
                 shares: Sheet::boxed(),
                 diffuse: sheet3(),

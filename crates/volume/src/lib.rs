@@ -27,11 +27,13 @@
 pub mod bake;
 mod bvh;
 pub mod check;
+pub mod compose;
 mod crossing;
 pub mod file;
 pub mod mesh;
 mod nearest;
 pub mod outline;
+pub mod pseudo;
 pub mod read;
 pub mod transform;
 pub mod volume;

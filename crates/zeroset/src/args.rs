@@ -518,6 +518,15 @@ pub(crate) enum Measure {
     Frame(MeasuredFrame),
     /// Render pictures with cells, which hold what is left of a field in a part of space, and without
     Cells(Measured),
+    /// Compose a volume of twenty moving bodies by the bricks that they touch, and from scratch, and render it with skylight
+    Volumes(MeasuredVolumes),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MeasuredVolumes {
+    /// Print as JSON
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Args)]

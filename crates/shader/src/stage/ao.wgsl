@@ -4,6 +4,8 @@
 struct AmbientVisibility {
     open: f32,
     bent: vec3f,
+    /// What the sky's light is multiplied by that comes to the body: the colours of things near by.
+    tint: vec3f,
 }
 
 /// What is shown as the distance to the surface at a place.

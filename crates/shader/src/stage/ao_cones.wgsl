@@ -97,7 +97,7 @@ fn ao_cones(at: Surface, how: Occluder) -> AmbientVisibility {
     let far = min(how.reach, frame.far);
     let ball = touching_ball(at, origin, far);
     if (ball >= far) {
-        return AmbientVisibility(1.0, at.normal);
+        return AmbientVisibility(1.0, at.normal, vec3f(1.0));
     }
     var to: array<vec3f, CONES>;
     var clear: array<f32, CONES>;
@@ -124,5 +124,5 @@ fn ao_cones(at: Surface, how: Occluder) -> AmbientVisibility {
         open += share;
         bent += to[k] * share;
     }
-    return AmbientVisibility(cone_open(open), normalize(bent));
+    return AmbientVisibility(cone_open(open), normalize(bent), vec3f(1.0));
 }

@@ -39,7 +39,7 @@ fn surround(at: Surface, what: LocalMaterial, seen: AmbientVisibility, followed:
     let arriving = max(
         arriving_around(bent, a.h0, a.h1, a.h2, a.h3, a.h4, a.h5, a.h6, a.h7, a.h8),
         vec3f(0.0),
-    ) * (a.strength * frame.ambient);
+    ) * (a.strength * frame.ambient) * seen.tint;
     let mirror = at.direction - what.normal * (2.0 * dot(what.normal, at.direction));
     let place = place_of_direction(turned_around(mirror, a.cosine, -a.sine));
     let start = vec2f(a.glossy_row, a.glossy_column);

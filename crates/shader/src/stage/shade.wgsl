@@ -79,7 +79,7 @@ fn arriving(path: Onward, at: Surface, what: LocalMaterial, followed: f32) -> Ar
 fn colour_of(what: LocalMaterial, light: Arrival, at: Surface, seen: AmbientVisibility, followed: f32) -> vec3f {
     return surface_colour(
         what.albedo, what.emission, what.finish,
-        light.diffuse, light.gloss, light.grazing, seen.open, seen.bent, what.normal, at.direction,
+        light.diffuse, light.gloss, light.grazing, seen.open, seen.tint, seen.bent, what.normal, at.direction,
         frame.sky_horizon, frame.sky_top, frame.sky_bottom, ambient_share(), followed,
     );
 }

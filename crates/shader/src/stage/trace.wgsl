@@ -166,7 +166,7 @@ fn follow(path: Onward, next: ptr<function, array<Onward, 2>>) -> Sample {
     let key = scramble(path.pixel, frame.seed ^ ((path.index + 1u) * HIT_SEEDS));
     let object = select(frame.objects, u32(max(marks.object, 0.0)), marks.object >= 0.0 && marks.object < f32(frame.objects));
     // inside a solid there is no sky: it is shown as if there were no solid
-    var seen = AmbientVisibility(1.0, normal);
+    var seen = AmbientVisibility(1.0, normal, vec3f(1.0));
     if (found.side > 0.0) {
         seen = sky_visibility(at, load_occluder(frame.object_rows + object * OCCLUDER_ROWS), key);
     }

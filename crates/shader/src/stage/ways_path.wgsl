@@ -36,7 +36,7 @@ fn counted_light(path: Onward, answer: vec4f, to: vec3f, found: f32, at: Surface
 
 /// The sky comes along the rays that meet nothing.
 fn sky_visibility(at: Surface, how: Occluder, key: vec2u) -> AmbientVisibility {
-    return AmbientVisibility(1.0, at.normal);
+    return AmbientVisibility(1.0, at.normal, vec3f(1.0));
 }
 
 fn ambient_share() -> f32 {

@@ -13,14 +13,14 @@ use zeroset_shade::sampling::{cosine_direction, point};
 use zeroset_shade::secondary::{SHARE, SMOOTHING, STEEPEST};
 
 impl Plain<'_> {
-    /// Ambient visibility and the bent normal.
+    /// Ambient visibility, the bent normal, and what colours things near by give to the light.
     pub(super) fn occlusion(
         &self,
         probe: &mut impl Probe,
         at: &Surface,
         object: f32,
         key: [u32; 2],
-    ) -> (f32, Vec3) {
+    ) -> (f32, Vec3, Vec3) {
         let chosen = self
             .scene
             .objects()
@@ -61,10 +61,15 @@ impl Plain<'_> {
                     .min(0.0)
                     .exp()
             }
+            method @ Occlusion::Skylight { .. } => return self.skylight(&mut f, at, method),
+            Occlusion::Curvature { blur, strength, .. } => self.curvature(at, blur, strength),
             Occlusion::Upward { scale } => {
                 1.0 - (scale * (1.0 - at.normal.dot(up))).clamp(0.0, 1.0)
             }
-            Occlusion::Cones { reach, steps } => return self.cones(&mut f, at, reach, steps),
+            Occlusion::Cones { reach, steps } => {
+                let (open, bent) = self.cones(&mut f, at, reach, steps);
+                return (open, bent, Vec3::ONE);
+            }
             Occlusion::Hemisphere { rays, reach } => {
                 self.hemisphere(probe, at, rays, reach, key, |_| 0.0)
             }
@@ -72,7 +77,7 @@ impl Plain<'_> {
                 self.hemisphere(probe, at, rays, reach, key, |t| 1.0 - (-tau * t).exp())
             }
         };
-        (open, at.normal)
+        (open, at.normal, Vec3::ONE)
     }
 
     fn hemisphere(

@@ -10,6 +10,7 @@ pub mod dense;
 mod light;
 mod march;
 mod probe;
+mod skylight;
 mod texture;
 
 pub use probe::{Compiled, Formula, Mark, Probe};
@@ -152,6 +153,7 @@ impl Quality {
 pub fn render<P: Probe>(scene: &Scene, quality: &Quality, probe: impl Fn() -> P + Sync) -> Film {
     let settings = scene.settings();
     let [width, height] = settings.size;
+    let sky = skylight::Volume::of(scene, quality, &mut probe());
     let plain = Plain {
         scene,
         settings,
@@ -160,6 +162,7 @@ pub fn render<P: Probe>(scene: &Scene, quality: &Quality, probe: impl Fn() -> P 
         quality: *quality,
         fallback: Material::default(),
         around: EnvironmentMap::renewed(None, scene),
+        sky,
     };
     let samples = plain.samples();
     let rows: Vec<Vec<Sample>> = (0..height)
@@ -181,6 +184,8 @@ struct Plain<'a> {
     fallback: Material,
     /// Light from all around, by an image.
     around: Option<Arc<EnvironmentMap>>,
+    /// The volume that skylight is read from.
+    sky: Option<skylight::Volume>,
 }
 
 /// Rays along a side of a pixel of which the covered parts are wanted: that many squared are close to the area.
@@ -324,8 +329,8 @@ impl Plain<'_> {
             d,
         };
         // inside a solid there is no sky: it is shown as if there were no solid
-        let (open, bent) = if side < 0.0 {
-            (1.0, normal)
+        let (open, bent, tint) = if side < 0.0 {
+            (1.0, normal, Vec3::ONE)
         } else {
             self.occlusion(probe, &surface, mark.object, key)
         };
@@ -368,6 +373,7 @@ impl Plain<'_> {
             gloss: field(light.gloss * shone),
             grazing: field(light.grazing * shone),
             open,
+            tint: field(tint),
             bent: field(bent),
             normal: field(surface.shown),
             direction: field(d),
@@ -393,6 +399,7 @@ impl Plain<'_> {
             let mirror = d - surface.shown * (2.0 * surface.shown.dot(d));
             let seen = map.reflected(field(mirror), what.roughness);
             let arriving = map.arriving(field(bent)) * self.scene.sky().ambient;
+            let arriving = field(glam(arriving) * tint);
             c += glam(around(
                 self.settings.shading,
                 &what,

@@ -7,6 +7,7 @@ use zeroset::gpu::testing;
 use zeroset::scene::accumulator::Accumulator;
 use zeroset::scene::light::Source;
 use zeroset::scene::material::{Image, Pattern};
+use zeroset::scene::methods::{Choice, Value};
 use zeroset::scene::render::Silent;
 use zeroset::scene::scene::{Scene, SceneParts};
 use zeroset::scene::settings::{Antialias, Filter, Shadow};
@@ -67,6 +68,13 @@ fn with_octaves(scene: &mut SceneParts, more: u32) {
 fn with_filter(scene: &mut SceneParts, other: Filter) {
     if let Antialias::Supersample { filter, .. } = &mut scene.settings.antialias {
         *filter = other;
+    }
+}
+
+fn skylight(scene: &mut SceneParts, param: &str, times: f32) {
+    let method = &mut scene.settings.occlusion;
+    if let Some(Value::Real(x)) = method.get(param) {
+        method.put(param, Value::Real(x * times));
     }
 }
 
@@ -169,10 +177,38 @@ const IN_SCENES: [SceneFault; 22] = [
     ),
 ];
 
+/// The same, of skylight.
+const SKYLIGHT_IN_SCENES: [SceneFault; 3] = [
+    (
+        "skylight that is too strong",
+        |s| skylight(s, "strength", 1.03),
+        "skylight under a ball",
+    ),
+    (
+        "a way that bends too far",
+        |s| skylight(s, "bend", 1.1),
+        "where skylight comes from",
+    ),
+    (
+        "colours that count for more",
+        |s| skylight(s, "bleed", 1.05),
+        "light beside a red wall",
+    ),
+];
+
 #[test]
 fn faults_in_scenes_are_noticed() {
+    noticed_in_scenes(&IN_SCENES);
+}
+
+#[test]
+fn faults_of_skylight_in_scenes_are_noticed() {
+    noticed_in_scenes(&SKYLIGHT_IN_SCENES);
+}
+
+fn noticed_in_scenes(faults: &[SceneFault]) {
     let renderer = CpuRenderer::new(None).unwrap();
-    for (what, edit, name) in IN_SCENES {
+    for &(what, edit, name) in faults {
         let draw = |scene: &Scene| {
             let mut scene = scene.clone();
             scene.edit(edit).expect("a scene");
@@ -185,9 +221,12 @@ fn faults_in_scenes_are_noticed() {
     }
 }
 
-/// What is wrong, in the text of which shader how, and the check that must notice. Formulas are recorded from those of the CPU:
+/// What is wrong, in the text of which shader how, and the check that must notice.
+type ShaderFault = (&'static str, &'static str, &'static str, &'static str);
+
+/// Faults of shaders. Formulas are recorded from those of the CPU:
 /// these faults are in how shaders call them, or in their numbers.
-const IN_SHADERS: [(&str, &str, &str, &str); 48] = [
+const IN_SHADERS: [ShaderFault; 48] = [
     (
         "a closest place behind the second sample",
         "closest_shadow(f, z, r, t, sharpness)",
@@ -478,12 +517,73 @@ const IN_SHADERS: [(&str, &str, &str, &str); 48] = [
     ),
 ];
 
+/// The same, of skylight.
+const SKYLIGHT_IN_SHADERS: [ShaderFault; 8] = [
+    (
+        "ridges for creases",
+        "skylight_curved(off *",
+        "skylight_curved(-off *",
+        "curvature in a corner",
+    ),
+    (
+        "samples of the finest mip alone",
+        "volume_sample(volume.grid + f32(level), volume.cells * finer + 1.0, place * finer)",
+        "volume_sample(volume.grid, volume.cells + 1.0, place)",
+        "skylight under a ball",
+    ),
+    (
+        "a volume half a voxel aside",
+        "(p - volume.origin) / volume.voxel",
+        "(p - volume.origin) / volume.voxel - 0.5",
+        "skylight under a ball",
+    ),
+    (
+        "distances that do not double",
+        "far *= 2.0;\n    }\n    let seen",
+        "far += how.reach;\n    }\n    let seen",
+        "skylight under a ball",
+    ),
+    (
+        "nodes that are mixed up",
+        "rows[1] - rows[0]) * t.y",
+        "rows[1] - rows[0]) * t.z",
+        "skylight under a ball",
+    ),
+    (
+        "a field that is not read where the volume ends",
+        "f = mix(around(at, p), f, share);",
+        "",
+        "skylight where its volume ends",
+    ),
+    (
+        "blue light beside a red wall",
+        "sums[k] +=",
+        "sums[2u - k] +=",
+        "light beside a red wall",
+    ),
+    (
+        "a sky behind the wall",
+        "skylight_bent(at.normal, way), seen.xyz",
+        "at.normal, seen.xyz",
+        "where skylight comes from",
+    ),
+];
+
 #[test]
 fn faults_in_shaders_are_noticed() {
+    noticed_in_shaders(&IN_SHADERS);
+}
+
+#[test]
+fn faults_of_skylight_in_shaders_are_noticed() {
+    noticed_in_shaders(&SKYLIGHT_IN_SHADERS);
+}
+
+fn noticed_in_shaders(faults: &[ShaderFault]) {
     let Some(gpu) = testing::renderer("planted faults against known values") else {
         return;
     };
-    for (what, from, to, name) in IN_SHADERS {
+    for &(what, from, to, name) in faults {
         let planted = std::cell::Cell::new(false);
         let draw = |scene: &Scene| {
             let mut job = gpu.job(scene).expect("a job");

@@ -21,6 +21,7 @@ mod paths;
 mod pattern;
 mod shadow;
 mod sky;
+mod skylight;
 mod triplanar;
 mod ways;
 
@@ -51,7 +52,8 @@ fn checks() -> Vec<Check> {
 }
 
 fn check_named(name: &str) -> Check {
-    let mut all = checks().into_iter().chain(paths::CHECKS);
+    let own = checks().into_iter();
+    let mut all = own.chain(paths::CHECKS).chain(skylight::CHECKS);
     let found = all.find(|c| c.name == name);
     found.unwrap_or_else(|| panic!("no check is called {name}"))
 }
@@ -71,7 +73,12 @@ fn on_plain(renderer: &CpuRenderer, scene: &Scene) -> Film {
 
 /// All checks with one renderer.
 fn all(draw: &dyn Fn(&Scene) -> Film) {
-    let wrong: Vec<String> = checks()
+    right(&checks(), draw);
+}
+
+/// Some checks with one renderer.
+fn right(checks: &[Check], draw: &dyn Fn(&Scene) -> Film) {
+    let wrong: Vec<String> = checks
         .iter()
         .filter_map(|check| Some(format!("{}: {}", check.name, (check.run)(draw).err()?)))
         .collect();
@@ -80,10 +87,22 @@ fn all(draw: &dyn Fn(&Scene) -> Film) {
 
 /// All ways of light, with one renderer.
 fn all_paths(draw: &dyn Fn(&Scene) -> Film) {
-    let wrong: Vec<String> = (paths::CHECKS.iter())
-        .filter_map(|check| Some(format!("{}: {}", check.name, (check.run)(draw).err()?)))
-        .collect();
-    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+    right(&paths::CHECKS, draw);
+}
+
+#[test]
+fn skylight_is_right() {
+    let renderer = CpuRenderer::new(None).unwrap();
+    right(&skylight::CHECKS, &|scene| on(&renderer, scene));
+    right(&skylight::CHECKS, &|scene| on_plain(&renderer, scene));
+}
+
+#[test]
+fn skylight_is_right_on_the_gpu() {
+    let Some(gpu) = testing::renderer("known values of skylight on the GPU") else {
+        return;
+    };
+    right(&skylight::CHECKS, &|scene| on(&gpu, scene));
 }
 
 #[test]

@@ -52,7 +52,7 @@ pub fn along(y: f64) -> DVec3 {
 }
 
 /// What arrives at a surface whose normal has this height: the mean of the sky by the cosine law, summed up.
-fn arriving(height: f64) -> DVec3 {
+pub fn arriving(height: f64) -> DVec3 {
     let n = DVec3::new((1.0 - height * height).sqrt(), height, 0.0);
     let (rings, turns) = (64, 64);
     let (mut sum, mut all) = (DVec3::ZERO, 0.0);

@@ -4,6 +4,7 @@ mod cones;
 mod hemisphere;
 mod samples;
 mod shared;
+mod skylight;
 
 pub(crate) use shared::SharedOcclusion;
 
@@ -15,12 +16,15 @@ use std::ops::Range;
 use zeroset_eval::BATCH;
 use zeroset_number::Lanes;
 use zeroset_scene::settings::Occlusion;
+use zeroset_shade::skylight::{SkyVolume, reading};
 
-/// Finds the ambient visibility and the bent normals of the hits of the range.
+/// Finds the ambient visibility and the bent normals of the hits of the range. `sky`: the volume of the scene, where any of its methods
+/// reads it.
 pub(crate) fn occlusion<S: Simd>(
     s: S,
     solid: &Solid<'_>,
     method: Occlusion,
+    sky: Option<&SkyVolume>,
     range: Range<usize>,
     q: &mut Scratch,
 ) {
@@ -30,6 +34,7 @@ pub(crate) fn occlusion<S: Simd>(
             q.hits.open[range.clone()].fill(1.0);
             q.hits.ball[range.clone()].fill(0.0);
             for k in 0..3 {
+                q.hits.tint[k][range.clone()].fill(1.0);
                 q.hits.bent[k][range.clone()].copy_from_slice(&q.hits.normal[k][range.clone()]);
             }
         },
@@ -47,6 +52,18 @@ pub(crate) fn occlusion<S: Simd>(
         } => samples::bent(s, solid, steps, step, scale, bend, range, q),
         Occlusion::Evans { scale, step, bend } => {
             samples::evans(s, solid, scale, step, bend, range, q)
+        }
+        Occlusion::Skylight { .. } => {
+            if let Some(volume) = sky
+                && let Some(reading) = reading(&method, volume.extent.voxel)
+            {
+                skylight::skylight(s, solid, volume, &reading, range, q);
+            }
+        }
+        Occlusion::Curvature { blur, strength, .. } => {
+            if let Some(volume) = sky {
+                skylight::curvature(s, volume, blur as usize, strength, range, q);
+            }
         }
         Occlusion::Upward { scale } => samples::upward(s, scale, range, q),
         Occlusion::Cones { reach, steps } => cones::cones(s, solid, reach, steps, range, q),

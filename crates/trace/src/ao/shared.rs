@@ -84,6 +84,9 @@ impl SharedOcclusion {
                 hits.open[i] = found.open;
                 // nothing is known to be empty
                 hits.ball[i] = 0.0;
+                for tint in &mut hits.tint {
+                    tint[i] = 1.0;
+                }
                 for (bent, x) in hits.bent.iter_mut().zip(found.bent) {
                     bent[i] = x;
                 }

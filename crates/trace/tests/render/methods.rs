@@ -56,6 +56,20 @@ fn occlusion() {
             step: 0.1,
             bend: 0.5,
         },
+        Occlusion::Skylight {
+            resolution: 32,
+            step: 2.0,
+            strength: 3.0,
+            bend: 0.5,
+            bleed: 0.0,
+        },
+        Occlusion::Skylight {
+            resolution: 40,
+            step: 1.0,
+            strength: 2.0,
+            bend: 0.0,
+            bleed: 0.7,
+        },
         Occlusion::Upward { scale: 0.5 },
         Occlusion::Cones {
             reach: None,

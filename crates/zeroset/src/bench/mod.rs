@@ -6,6 +6,7 @@ mod frame;
 #[cfg(feature = "gpu")]
 mod gpu;
 mod march;
+mod volumes;
 
 use crate::args::{BenchArgs, Measure};
 use crate::console::Console;
@@ -68,6 +69,14 @@ pub(crate) fn run(args: &BenchArgs, console: &Console) -> Result<(), Failure> {
                 None => trace::bench::molecule(),
             };
             let found = cells::cells(&scene).map_err(failed)?;
+            console.emit(&if what.json {
+                json::line(&found)?
+            } else {
+                found.text()
+            })
+        }
+        Measure::Volumes(what) => {
+            let found = volumes::volumes().map_err(|error| Failure::new(Exit::Job, error))?;
             console.emit(&if what.json {
                 json::line(&found)?
             } else {
