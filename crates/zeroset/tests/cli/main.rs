@@ -12,6 +12,7 @@ mod frames;
 mod hostile;
 mod language;
 mod limit;
+mod mesh;
 mod reference;
 mod render;
 mod run;
