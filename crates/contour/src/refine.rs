@@ -11,10 +11,13 @@ use crate::surface::normal;
 use crate::vector::{V, add, dot, length, scale, single, sub, wide};
 use crate::watch::Watch;
 use rayon::prelude::*;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// The share of the tolerance from which on an edge is split.
 const SHARE: f64 = 0.5;
+/// And that from which on one is split between faces that meet at more than 25 degrees: edges and corners are kept as they are.
+const EXACT: f64 = 0.03;
+const SHARP: f64 = 0.906;
 /// Times that edges are split.
 const PASSES: usize = 8;
 /// Edges that are looked at together.
@@ -64,7 +67,13 @@ pub(crate) fn refine<'p>(
             })
             .collect::<Vec<Vec<f64>>>()
             .concat();
-        let far = |i: &usize| off[*i] > SHARE * tolerance;
+        let sharp = |e: &Edge| {
+            let [f, g] = e.faces.map(|f| normal(surface.faces[f as usize].map(at)));
+            dot(f, g) < SHARP * length(f) * length(g)
+        };
+        let far = |i: &usize| {
+            off[*i] > SHARE * tolerance || off[*i] > EXACT * tolerance && sharp(&edges[*i])
+        };
         let mut worst: Vec<usize> = (0..edges.len()).filter(far).collect();
         // those that could not be split before come last: beside them others may
         let tried = |i: &usize| refused.contains(&edges[*i].ends);
@@ -87,7 +96,7 @@ pub(crate) fn refine<'p>(
         let mends: Vec<Vec<Option<Mend>>> = (chosen.par_chunks(CHUNK))
             .map_init(&make, |sampler, edges| between(&surface, edges, sampler))
             .collect();
-        let (mut split, mut flipped) = (0, HashSet::new());
+        let (mut split, mut flipped, mut stuck) = (0, HashSet::new(), Vec::new());
         for (edge, mend) in chosen.iter().zip(mends.concat()) {
             match mend {
                 Some(Mend::Split(vertex)) => {
@@ -102,14 +111,100 @@ pub(crate) fn refine<'p>(
                 }
                 _ => {
                     refused.insert(edge.ends);
+                    stuck.extend(edge.ends.iter().chain(&edge.opposite));
                 }
             }
+        }
+        // a vertex beside an edge or a corner that no cell saw belongs on it
+        stuck.sort_unstable();
+        stuck.dedup();
+        if !stuck.is_empty() {
+            split += shift(&mut surface, &stuck, &mut make());
         }
         if split == 0 {
             break;
         }
     }
     Some(surface)
+}
+
+/// Moves vertices to where the planes of the faces around them meet, if the faces are much nearer to the surface then and none is folded over.
+/// Says how many moved.
+fn shift(surface: &mut Surface, vertices: &[u32], sampler: &mut Sampler<'_>) -> usize {
+    let mut fans: HashMap<u32, Vec<[u32; 3]>> = vertices.iter().map(|v| (*v, Vec::new())).collect();
+    for face in &surface.faces {
+        for v in face {
+            if let Some(fan) = fans.get_mut(v) {
+                fan.push(*face);
+            }
+        }
+    }
+    let mut ask = |points: &[[f32; 3]], out: &mut Vec<Slope>| sampler.whole_slopes(points, out);
+    let (mut asked, mut slopes) = (Vec::new(), Vec::new());
+    let mut moved = 0;
+    for v in vertices {
+        let fan = &fans[v];
+        let own = wide(surface.points[*v as usize]);
+        // the fan, were the vertex elsewhere
+        let placed = |to: V| -> Vec<[V; 3]> {
+            let of = |f: &[u32; 3]| {
+                f.map(|w| match w == *v {
+                    true => to,
+                    false => wide(surface.points[w as usize]),
+                })
+            };
+            fan.iter().map(of).collect()
+        };
+        let now = placed(own);
+        asked.clear();
+        asked.extend(now.iter().map(|f| single(scale(add(own, centre(*f)), 0.5))));
+        ask(&asked, &mut slopes);
+        for (p, slope) in asked.iter_mut().zip(&slopes) {
+            *p = single(onto(wide(*p), slope));
+        }
+        ask(&asked, &mut slopes);
+        let planes: Vec<Plane> = (asked.iter().zip(&slopes))
+            .filter(|(_, slope)| slope.normal != [0.0; 3])
+            .map(|(p, slope)| Plane {
+                point: onto(wide(*p), slope),
+                normal: slope.normal,
+            })
+            .collect();
+        let reach = (now.iter().flatten()).fold(0.0_f64, |r, p| r.max(length(sub(*p, own))));
+        let reach = [0.7 * reach; 3];
+        let mut spots = [Spot::new(sub(own, reach), add(own, reach), planes)];
+        let (found, _) = look(&mut spots, &mut ask);
+        let to = wide(found[0]);
+        // how far middles of faces and edges are off, and how far faces are turned away
+        let mut judge = |faces: &[[V; 3]]| {
+            asked.clear();
+            for f in faces {
+                asked.push(single(centre(*f)));
+                for k in 0..3 {
+                    asked.push(single(scale(add(f[k], f[(k + 1) % 3]), 0.5)));
+                }
+            }
+            ask(&asked, &mut slopes);
+            let off = slopes.iter().fold(0.0_f64, |m, s| m.max(s.distance.abs()));
+            let least = faces.iter().enumerate().fold(1.0_f64, |least, (i, f)| {
+                let n = normal(*f);
+                let l = length(n);
+                least.min(if l > 0.0 {
+                    dot(n, slopes[4 * i].normal) / l
+                } else {
+                    -1.0
+                })
+            });
+            (off, least)
+        };
+        let (before, was) = judge(&now);
+        let (after, is) = judge(&placed(to));
+        if after < WORTH * before && is > ASTRAY.min(was) {
+            surface.points[*v as usize] = single(to);
+            moved += 1;
+        }
+    }
+    moved
 }
 
 /// Whether no edge joins two vertices yet; remembers that one will.

@@ -74,9 +74,6 @@ fn corners_and_edges_are_kept() {
     let half = [1.0, 0.5, 0.25];
     for angle in [0.0, 0.7, 2.0] {
         let shape = box3(half.map(|h| 2.0 * h)).rotate([0.3, 0.5, -0.2], angle);
-        let made = made(&shape, &Contour::new(1e-4));
-        let volume = made.surface.volume();
-        assert!((volume - 1.0).abs() < 1e-4, "{volume}");
         // the corners as the placement turns them
         let upright = self::made(&box3(half.map(|h| 2.0 * h)), &Contour::new(1e-3));
         let corners = Contour::new(1e-3);
@@ -101,7 +98,9 @@ fn corners_and_edges_are_kept() {
                 .filter(|d| (**d - corner).abs() < most)
                 .count()
         };
-        assert!(near(1e-4) >= 6 && near(2e-3) == 8, "{distances:?}");
+        assert!(near(1e-4) >= 7 && near(1e-3) == 8, "{distances:?}");
+        let volume = turned.surface.volume();
+        assert!((volume - 1.0).abs() < 1e-4, "{volume}");
     }
 }
 
