@@ -1,6 +1,6 @@
 //! `zeroset mesh`: a scene's solid as a mesh of triangles.
 
-use crate::args::{MeshArgs, SceneArgs};
+use crate::args::MeshArgs;
 use crate::console::{Console, grouped};
 use crate::failure::{Exit, Failure};
 use crate::file::make_folder;

@@ -16,6 +16,7 @@ mod mesh;
 mod reference;
 mod render;
 mod run;
+mod transparent;
 mod usage;
 mod watch;
 mod writing;
