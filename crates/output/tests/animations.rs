@@ -54,13 +54,14 @@ fn a_gif_shows_every_frame_in_its_time() {
                 screen[at..at + 3].copy_from_slice(&palette[from..from + 3]);
             }
         }
-        // 256 kinds of colours fit but for a few, which are mixed of their neighbours
+        // there are more colours than 255: some are mixed of their neighbours, which are 10 apart
+        let mut sum = 0.0;
         for (shown, right) in screen.iter().zip(frame(number)) {
-            assert!(
-                shown.abs_diff(right) <= 12,
-                "frame {number}: {shown}, not {right}"
-            );
+            let off = shown.abs_diff(right);
+            assert!(off <= 24, "frame {number}: {shown}, not {right}");
+            sum += f64::from(off);
         }
+        assert!(sum < 4.0 * screen.len() as f64, "frame {number}: {sum}");
         // after the first one, what stands still is not written again
         assert!(number == 0 || usize::from(part.width) * usize::from(part.height) <= 32);
         number += 1;

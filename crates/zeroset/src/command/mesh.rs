@@ -109,9 +109,12 @@ fn solid(scene: &Scene, args: &MeshArgs) -> Result<(Program, Aabb), Failure> {
             .filter(|o| !o.field.facts().bounds.is_finite())
             .map(|o| match &o.place {
                 Some((_, line, _)) => {
-                    format!("{} (line {line})", display::name(&o.name, display::NAME))
+                    format!(
+                        "object {} (line {line})",
+                        display::name(&o.name, display::NAME)
+                    )
                 }
-                None => display::name(&o.name, display::NAME).to_string(),
+                None => format!("object {}", display::name(&o.name, display::NAME)),
             })
             .take(5)
             .collect();

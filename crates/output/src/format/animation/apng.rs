@@ -9,6 +9,8 @@ pub(super) struct Apng<W: Write> {
     writer: ::png::Writer<W>,
     size: [u32; 2],
     before: Vec<u8>,
+    /// Frames that are still to come: the file has said how many there are.
+    left: u32,
 }
 
 impl<W: Write> Apng<W> {
@@ -27,11 +29,13 @@ impl<W: Write> Apng<W> {
             writer: encoder.write_header().map_err(plain)?,
             size: timing.size,
             before: Vec::new(),
+            left: timing.frames,
         })
     }
 
     pub(super) fn push(&mut self, frame: &[u8]) -> io::Result<()> {
         is_whole(frame, self.size)?;
+        self.left = self.left.saturating_sub(1);
         let width = self.size[0] as usize;
         if self.before.is_empty() {
             self.writer.write_image_data(frame).map_err(plain)?;
@@ -56,6 +60,13 @@ impl<W: Write> Apng<W> {
     }
 
     pub(super) fn finish(self) -> io::Result<()> {
+        if self.left > 0 {
+            let message = format!(
+                "{} of the frames that were announced are missing",
+                self.left
+            );
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+        }
         self.writer.finish().map_err(plain)
     }
 }

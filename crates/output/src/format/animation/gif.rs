@@ -56,7 +56,7 @@ impl<W: Write> Gif<W> {
             };
             let of_row = |row: usize| row * width + x..row * width + x + w;
             let part: Vec<u8> = (y..y + h)
-                .flat_map(|row| of_row(row))
+                .flat_map(of_row)
                 .map(|i| {
                     if before.get(i) == Some(&now[i]) {
                         STAYS
