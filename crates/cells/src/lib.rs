@@ -124,8 +124,7 @@ impl Cells {
     /// As [`Cells::new`], with another budget of bytes.
     pub fn within(program: &Program, around: Aabb, budget: usize) -> Option<Cells> {
         let structure = program.structure();
-        // a remainder by zero is no number, and no range says so
-        if divides_by_what_varies(program) {
+        if !can_be_pruned(program) {
             return None;
         }
         let slopes = program.slope() >= STEEP && !program.is_fractal();
@@ -395,7 +394,12 @@ impl Cells {
     }
 }
 
-/// Whether a formula in the program takes remainders by anything but a constant other than zero.
+/// Whether what is left of a program in a box has the same bits there. A remainder by zero is no number, and no range says so: a formula
+/// that takes remainders by anything but a constant other than zero is never cut.
+pub fn can_be_pruned(program: &Program) -> bool {
+    !divides_by_what_varies(program)
+}
+
 fn divides_by_what_varies(program: &Program) -> bool {
     let tape = program.values();
     let mut constant = vec![false; usize::from(tape.code.registers)];

@@ -192,7 +192,7 @@ impl Document {
         let finished = on_a_deep_stack(|| {
             let (mut draft, result) = run();
             if result.is_ok() && !options.bare {
-                draft.welcome();
+                draft.welcome(!options.floorless);
             }
             let cache = std::mem::take(&mut draft.files.cache);
             (finish(name, draft, result, limits), cache)

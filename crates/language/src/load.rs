@@ -26,6 +26,8 @@ pub struct Options {
     pub moments: bool,
     /// Whether only what the file itself shows is wanted: a scene that says nothing but what is shown gets no stage.
     pub bare: bool,
+    /// Whether the stage that such a scene gets has no floor: the thing stands alone.
+    pub floorless: bool,
 }
 
 /// How long a camera's shutter is open.

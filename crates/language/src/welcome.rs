@@ -28,8 +28,8 @@ const COLOURS: [Vec3; 5] = [
 const FLOOR: Vec3 = Vec3::new(0.66, 0.64, 0.61);
 
 impl Draft {
-    /// Adds the stage, if the scene leaves it to us.
-    pub(crate) fn welcome(&mut self) {
+    /// Adds the stage, if the scene leaves it to us; with its floor, or without.
+    pub(crate) fn welcome(&mut self, floor: bool) {
         let says = self.view.is_some()
             || self.lights.is_some()
             || self.sky.is_some()
@@ -50,18 +50,20 @@ impl Draft {
                 object.material = number;
             }
         }
-        let floor = Field::primitive(plane, plane.info.defaults())
-            .and_then(|f| f.place(Placement::moved([0.0, bounds.min[1], 0.0])));
-        let (Ok(field), Some(material)) = (floor, self.number(&matte(FLOOR, 0.05))) else {
-            return;
-        };
-        self.objects.push(Object {
-            name: "floor".into(),
-            field,
-            material,
-            occlusion: None,
-            place: None,
-        });
+        if floor {
+            let plane = Field::primitive(plane, plane.info.defaults())
+                .and_then(|f| f.place(Placement::moved([0.0, bounds.min[1], 0.0])));
+            let (Ok(field), Some(material)) = (plane, self.number(&matte(FLOOR, 0.05))) else {
+                return;
+            };
+            self.objects.push(Object {
+                name: "floor".into(),
+                field,
+                material,
+                occlusion: None,
+                place: None,
+            });
+        }
         let light = |direction: [f32; 3], radiance: [f32; 3], shadow| Light {
             source: Source::Directional {
                 direction: Vec3::from(direction).normalize(),

@@ -20,6 +20,10 @@ pub trait Rows {
     fn height(&self) -> u32;
     /// The pixels of a row, from the left, in place of what was in `out`.
     fn row(&self, y: u32, out: &mut Vec<[f32; 3]>);
+    /// How opaque the pixels of a row are, 0 to 1; none where all are.
+    fn opacity(&self, _y: u32) -> Option<&[f32]> {
+        None
+    }
 }
 
 impl Rows for Picture {
@@ -44,6 +48,8 @@ pub struct Developed<'f> {
     film: &'f Film,
     gain: f32,
     tone: Tone,
+    /// Whether colours are those of the part of a pixel that is covered, times how much is.
+    is_cut_out: bool,
 }
 
 impl<'f> Developed<'f> {
@@ -53,11 +59,29 @@ impl<'f> Developed<'f> {
             film,
             gain: transform.exposure.exp2(),
             tone: transform.tone,
+            is_cut_out: false,
+        }
+    }
+
+    /// The same of a film that was [cut out](Film::cut_out): colours are divided by the coverage, which is how opaque a pixel is, as
+    /// PNG has it.
+    #[must_use]
+    pub fn cut_out(self) -> Developed<'f> {
+        Developed {
+            is_cut_out: self.film.has(Plane::Coverage),
+            ..self
         }
     }
 }
 
 impl Rows for Developed<'_> {
+    fn opacity(&self, y: u32) -> Option<&[f32]> {
+        let width = self.film.width() as usize;
+        let coverage = self.film.plane(Plane::Coverage);
+        let row = coverage.get(y as usize * width..(y as usize + 1) * width);
+        row.filter(|_| self.is_cut_out)
+    }
+
     fn width(&self) -> u32 {
         self.film.width()
     }
@@ -72,8 +96,11 @@ impl Rows for Developed<'_> {
         let (linear, _) = self.film.plane(Plane::Colour).as_chunks::<3>();
         match linear.get(y as usize * width..(y as usize + 1) * width) {
             Some(row) => {
-                out.extend(row.iter().map(|rgb| {
-                    tone::shown(rgb.map(|c| c * self.gain), self.tone).map(tone::encode)
+                let shares = self.opacity(y).unwrap_or_default();
+                out.extend(row.iter().enumerate().map(|(x, rgb)| {
+                    let share = shares.get(x).copied().unwrap_or(1.0);
+                    let gain = if share > 0.0 { self.gain / share } else { 0.0 };
+                    tone::shown(rgb.map(|c| c * gain), self.tone).map(tone::encode)
                 }))
             }
             None => out.resize(width, [0.0; 3]),

@@ -144,10 +144,62 @@ impl Film {
         &mut self.planes[plane as usize]
     }
 
+    /// Takes from each pixel what is seen of the background beside the things: what is left are colours times how much of the pixel is covered
+    /// ("premultiplied", Porter and Duff 1984). `background` is the same picture without things; what it shows in a pixel counts as far as the pixel
+    /// is not covered. Films of other sizes, or without colours or coverage, stay as they are.
+    pub fn cut_out(&mut self, background: &Film) {
+        let size = |film: &Film| [film.width, film.height];
+        if size(self) != size(background) {
+            return;
+        }
+        let coverage = std::mem::take(&mut self.planes[Plane::Coverage as usize]);
+        let behind = background.plane(Plane::Colour).as_chunks::<3>().0;
+        let own = self.planes[Plane::Colour as usize].as_chunks_mut::<3>().0;
+        for ((pixel, behind), share) in own.iter_mut().zip(behind).zip(&coverage) {
+            for (c, b) in pixel.iter_mut().zip(behind) {
+                *c = match *share > 0.0 {
+                    true => (*c - (1.0 - share) * b).max(0.0),
+                    false => 0.0,
+                };
+            }
+        }
+        self.planes[Plane::Coverage as usize] = coverage;
+    }
+
     /// The numbers of all planes, to be written, in the order of [`Plane::ALL`].
     pub fn planes_mut(&mut self) -> impl Iterator<Item = (Plane, &mut [f32])> {
         Plane::ALL
             .into_iter()
             .zip(self.planes.iter_mut().map(Vec::as_mut_slice))
+    }
+}
+
+#[cfg(test)]
+mod cut_tests {
+    use super::*;
+
+    #[test]
+    fn what_is_cut_out_lies_over_its_background_as_before() {
+        let (thing, behind) = ([0.8_f32, 0.1, 4.0], [0.2_f32, 0.5, 1.0]);
+        let shares = [0.0, 0.25, 1.0];
+        let planes = [Plane::Colour, Plane::Coverage];
+        let mut film = Film::with(3, 1, &planes);
+        let mut background = Film::with(3, 1, &planes[..1]);
+        for (i, share) in shares.into_iter().enumerate() {
+            film.plane_mut(Plane::Coverage)[i] = share;
+            for k in 0..3 {
+                let both = share * thing[k] + (1.0 - share) * behind[k];
+                film.plane_mut(Plane::Colour)[3 * i + k] = both;
+                background.plane_mut(Plane::Colour)[3 * i + k] = behind[k];
+            }
+        }
+        film.cut_out(&background);
+        for (i, share) in shares.into_iter().enumerate() {
+            for k in 0..3 {
+                let found = film.plane(Plane::Colour)[3 * i + k];
+                assert!((found - share * thing[k]).abs() < 1e-6, "{found}");
+            }
+        }
+        assert_eq!(film.plane(Plane::Coverage), shares);
     }
 }

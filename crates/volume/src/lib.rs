@@ -1,7 +1,7 @@
 //! Sampled fields: meshes as grids of distances, distance transforms of pictures and volumes, and the files that they come in.
 //!
 //! A mesh is [read](read::read), [looked through](check::mend) and [baked](bake::Bake::bake) into a [`Volume`](volume::Volume):
-//! signed distances at the nodes of a grid, which a scene takes as a field like any other.
+//! signed distances at the nodes of a grid, which a scene takes as a field like any other. [`write`](write::write) gives the bytes of mesh files.
 //!
 //! ```
 //! use zeroset_volume::bake::{Alone, Bake};
@@ -38,3 +38,4 @@ pub mod read;
 pub mod transform;
 pub mod volume;
 mod winding;
+pub mod write;

@@ -82,6 +82,8 @@ pub(crate) enum Command {
     Slice(SliceArgs),
     /// Sample a mesh or a scene as signed distances on a grid, and write it as OpenVDB or NRRD
     Bake(BakeArgs),
+    /// Make a mesh of a scene's solid: closed, with its sharp edges and its colours
+    Mesh(MeshArgs),
     /// Draw the signed distance transform of a picture, as Evans 2006, figure 3
     Edt(EdtArgs),
     /// Say how different pictures are from another one: RMSE, PSNR, SSIM and FLIP
@@ -141,6 +143,10 @@ pub(crate) struct RenderArgs {
     /// Leave out the strip beside a view that explains its colours
     #[arg(long)]
     pub no_legend: bool,
+    /// Leave the background out: a PNG gets an alpha channel, an EXR the channel A and premultiplied colours. A scene that says nothing but what
+    /// is shown gets no floor either
+    #[arg(long, conflicts_with_all = ["view", "denoise"])]
+    pub transparent: bool,
     /// Bits a channel of a PNG
     #[arg(long, value_name = "BITS", value_parser = PossibleValuesParser::new(["8", "16"]), default_value = "8")]
     pub bits: String,
@@ -436,6 +442,30 @@ pub(crate) struct BakeArgs {
     /// Change a limit on what a scene or a mesh may cost; can be given many times. `zeroset fields limits` lists them
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment, help_heading = "Scene")]
     pub limit: Vec<(String, String)>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MeshArgs {
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// The file: .glb, .stl, .obj, .ply or .3mf
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub output: PathBuf,
+    /// How far the faces may be from the surface, scene units. Default: a thousandth of the longest side
+    #[arg(long, value_name = "LENGTH", value_parser = crate::values::positive)]
+    pub tolerance: Option<f64>,
+    /// Cells along the longest side; what is thinner than a cell may be missed. Default: from 64 on as many as the tolerance needs
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(i64::from(zeroset_contour::LEAST)..=i64::from(zeroset_contour::MOST)))]
+    pub resolution: Option<u32>,
+    /// Keep all faces, also where the tolerance needs fewer
+    #[arg(long)]
+    pub all_faces: bool,
+    /// Cut what goes beyond this box, and close it there: scenes with an endless floor need it
+    #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true, value_parser = crate::values::bounds)]
+    pub bounds: Option<zeroset_catalogue::bounds::Aabb>,
+    /// Print what was made as JSON
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Args)]

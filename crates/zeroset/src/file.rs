@@ -8,7 +8,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use zeroset_language::naming::default_stem;
-use zeroset_output::atomic::write_atomically;
+use zeroset_output::atomic::{create_folder, write_atomically};
 use zeroset_output::display;
 use zeroset_scene::render::Observer;
 
@@ -30,6 +30,16 @@ pub(crate) fn no_link(name: &Path) -> Result<(), Failure> {
         return Err(Failure::with_help(Exit::File, message, help));
     }
     Ok(())
+}
+
+/// Makes the folder that a file goes to, where there is none.
+pub(crate) fn make_folder(path: &Path) -> Result<(), Failure> {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() && !folder.exists() => {
+            Ok(create_folder(folder)?)
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Writes text to a file.

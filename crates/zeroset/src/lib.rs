@@ -14,6 +14,7 @@
 //! | `shader` | shaders for any scene, in WGSL and GLSL, with the feature `shaders` |
 //! | `gpu` | the renderer on the GPU, with the feature of that name |
 //! | [`output`] | pictures and files |
+//! | [`contour`] | meshes of the surfaces of fields |
 //! | [`section`] | fields on a plane |
 //!
 //! A shape is written as in a scene file, and evaluated wherever one wants to know it:
@@ -66,6 +67,7 @@ pub use glam;
 pub use zeroset_field::shape;
 
 pub use zeroset_catalogue as catalogue;
+pub use zeroset_contour as contour;
 pub use zeroset_eval as eval;
 pub use zeroset_field as field;
 #[cfg(feature = "gpu")]

@@ -12,6 +12,7 @@ mod file;
 mod fit;
 mod interrupt;
 mod json;
+mod paint;
 mod reference;
 mod render;
 mod report;
@@ -103,6 +104,7 @@ fn run(command: &Command, console: &Console) -> Result<(), Failure> {
         Command::Fields(args) => command::fields::run(args, console),
         Command::FitAo(args) => command::fit_ao::run(args, console),
         Command::Bake(args) => command::bake::run(args, console),
+        Command::Mesh(args) => command::mesh::run(args, console),
         Command::Edt(args) => command::bake::edt(args, console),
         Command::Compare(args) => command::compare::run(args, console),
         Command::Bench(args) => bench::run(args, console),

@@ -37,6 +37,7 @@ pub(crate) fn options(args: &SceneArgs, size: Option<[u32; 2]>) -> Result<Option
         limits,
         moments: false,
         bare: false,
+        floorless: false,
     })
 }
 

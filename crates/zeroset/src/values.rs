@@ -242,6 +242,23 @@ pub(crate) fn cells(text: &str) -> Result<f64, &'static str> {
         .ok_or("write a number of cells, 0 or more")
 }
 
+/// A box: its smallest corner and its largest.
+pub(crate) fn bounds(text: &str) -> Result<zeroset_catalogue::bounds::Aabb, &'static str> {
+    let numbers: Vec<f64> = (text.split(','))
+        .map_while(|n| n.trim().parse().ok())
+        .collect();
+    let [x0, y0, z0, x1, y1, z1] = numbers[..] else {
+        return Err("write the smallest corner and the largest, for example -2,0,-2,2,3,2");
+    };
+    let (min, max) = ([x0, y0, z0], [x1, y1, z1]);
+    let is_box = (0..3).all(|k| min[k] < max[k] && min[k].abs() <= 1e6 && max[k].abs() <= 1e6);
+    if is_box && text.split(',').count() == 6 {
+        Ok(zeroset_catalogue::bounds::Aabb::new(min, max))
+    } else {
+        Err("the first corner must be less than the second along each axis, and none beyond 1e6")
+    }
+}
+
 /// What is inside of a mesh.
 pub(crate) fn sign(text: &str) -> Result<zeroset_volume::bake::Sign, String> {
     use zeroset_volume::bake::Sign;

@@ -44,6 +44,30 @@ pub fn write_watched(
     notes: &Metadata,
     observer: &dyn Observer,
 ) -> io::Result<()> {
+    write_planes(writer, film, None, notes, observer)
+}
+
+/// As [`write_watched`], of a film that was [cut out](Film::cut_out): its coverage is the channel `A` too, by which OpenEXR has colours multiplied.
+///
+/// # Errors
+/// As [`write_watched`].
+pub fn write_cut_out(
+    writer: impl Write + Seek,
+    film: &Film,
+    notes: &Metadata,
+    observer: &dyn Observer,
+) -> io::Result<()> {
+    let opacity = Some(film.plane(Plane::Coverage)).filter(|c| !c.is_empty());
+    write_planes(writer, film, opacity, notes, observer)
+}
+
+fn write_planes(
+    writer: impl Write + Seek,
+    film: &Film,
+    opacity: Option<&[f32]>,
+    notes: &Metadata,
+    observer: &dyn Observer,
+) -> io::Result<()> {
     let size = Vec2(film.width() as usize, film.height() as usize);
     let held = Plane::ALL
         .iter()
@@ -60,6 +84,7 @@ pub fn write_watched(
             AnyChannel::new(name, FlatSamples::F32(samples))
         })
     });
+    let alpha = opacity.map(|a| AnyChannel::new("A", FlatSamples::F32(a.to_vec())));
     let mut attributes = LayerAttributes {
         software_name: Some(text(SOFTWARE)),
         ..LayerAttributes::default()
@@ -72,7 +97,7 @@ pub fn write_watched(
         size,
         attributes,
         Encoding::SMALL_LOSSLESS,
-        AnyChannels::sort(list.collect()),
+        AnyChannels::sort(list.chain(alpha).collect()),
     );
     let writer = Sorted::new(Asking { writer, observer });
     let total = u64::from(film.width()) * u64::from(film.height());

@@ -2,6 +2,7 @@
 
 mod attributes;
 
+pub mod animation;
 pub mod checkpoint;
 pub mod exr;
 pub mod png;

@@ -57,7 +57,11 @@ fn encode(
     observer: &dyn Observer,
 ) -> io::Result<()> {
     let mut encoder = Encoder::new(writer, picture.width(), picture.height());
-    encoder.set_color(ColorType::Rgb);
+    let is_opaque = picture.opacity(0).is_none();
+    encoder.set_color(match is_opaque {
+        true => ColorType::Rgb,
+        false => ColorType::Rgba,
+    });
     encoder.set_depth(match depth {
         Depth::Eight => BitDepth::Eight,
         Depth::Sixteen => BitDepth::Sixteen,
@@ -76,19 +80,25 @@ fn encode(
     }
     let mut writer = encoder.write_header().map_err(plain)?;
     let mut stream = writer.stream_writer().map_err(plain)?;
-    let mut line = Vec::with_capacity(picture.width() as usize * 6);
+    let mut line = Vec::with_capacity(picture.width() as usize * 8);
     let mut row = Vec::new();
     let width = u64::from(picture.width());
     let total = width * u64::from(picture.height());
     for y in 0..picture.height() {
         picture.row(y, &mut row);
         line.clear();
+        let opacity = picture.opacity(y);
         for (x, pixel) in (0..).zip(&row) {
-            for &channel in pixel {
-                match depth {
-                    Depth::Eight => line.push(tone::quantise8(channel, x, y)),
-                    Depth::Sixteen => line.extend(tone::quantise16(channel).to_be_bytes()),
-                }
+            let mut put = |channel: f32| match depth {
+                Depth::Eight => line.push(tone::quantise8(channel, x, y)),
+                Depth::Sixteen => line.extend(tone::quantise16(channel).to_be_bytes()),
+            };
+            pixel.iter().for_each(|channel| put(*channel));
+            if !is_opaque {
+                put(opacity
+                    .and_then(|o| o.get(x as usize))
+                    .copied()
+                    .unwrap_or(1.0));
             }
         }
         // rows that compress to nothing are not written before the end

@@ -13,6 +13,7 @@ pub(crate) mod fit_ao;
 #[cfg(feature = "gpu")]
 pub(crate) mod gpu;
 pub(crate) mod init;
+pub(crate) mod mesh;
 pub(crate) mod slice;
 #[cfg(feature = "window")]
 pub(crate) mod view;

@@ -20,11 +20,24 @@ use zeroset_output::atomic::probe;
 use zeroset_output::denoise;
 use zeroset_output::format::png::Depth;
 use zeroset_output::format::{Metadata, exr, png};
-use zeroset_output::picture::{Developed, Rows};
+use zeroset_output::picture::{Developed, Picture, Rows};
+use zeroset_output::tone;
 use zeroset_output::view::{PlaneView, needed};
 use zeroset_scene::film::Plane;
 use zeroset_scene::render::{Frame, RenderError};
 use zeroset_scene::scene::Scene;
+use zeroset_scene::valid::SceneError;
+
+/// A picture, and what it took.
+struct Made {
+    frame: Frame,
+    used: Used,
+    /// The share of it that is finished.
+    finished: f64,
+    /// Why not all of it is.
+    lack: Option<String>,
+    convergence: Option<(Option<f64>, f64)>,
+}
 
 /// What the flags ask for.
 pub(crate) struct Job<'a> {
@@ -38,8 +51,17 @@ impl<'a> Job<'a> {
     pub(crate) fn new(args: &'a RenderArgs, console: &'a Console) -> Result<Job<'a>, Failure> {
         let options = Options {
             moments: true,
+            floorless: args.transparent,
             ..crate::scene::options(&args.scene, args.size.map(|s| s.0))?
         };
+        if let Some(path) = &args.output
+            && args.transparent
+            && matches!(Container::of(path)?, Container::Clip(_))
+        {
+            let help = "number the frames as pictures: end the name in .png or .exr";
+            let message = format!("{} has no transparent pixels", path.display());
+            return Err(Failure::with_help(Exit::Usage, message, help));
+        }
         if let Some(path) = &args.output
             && Container::of(path)? == Container::Exr
             && args.view != Plane::Colour
@@ -92,7 +114,79 @@ impl<'a> Job<'a> {
             }
             label = format!("{label} {}/{}", number - frames.start + 1, frames.len());
         }
-        let (planes, mut copies) = planes(&path, self.args.view, self.args.denoise)?;
+        let made = self.produce(loaded, &scene, options, &path, &label, cancelled)?;
+        self.write(
+            &path,
+            &scene,
+            options,
+            &made.frame,
+            made.lack.as_deref(),
+            cancelled,
+        )?;
+        self.report(
+            &path,
+            &scene,
+            options,
+            frame.map(|(number, _)| number),
+            &made,
+        )?;
+        Ok(made.lack.map(|words| unfinished(&path, &words)))
+    }
+
+    /// Renders a frame of an animation to bytes as a screen shows them, three a pixel.
+    ///
+    /// # Errors
+    /// As [`Job::render`].
+    pub(crate) fn frame(
+        &self,
+        loaded: &Loaded,
+        options: &Options,
+        path: &Path,
+        (number, frames): (u32, &Range<u32>),
+    ) -> Result<(Pixels, Option<Failure>), Failure> {
+        let mut scene = loaded.scene.clone();
+        self.args.methods.apply(&mut scene, &options.limits)?;
+        let label = format!(
+            "{} {}/{}",
+            scene.name(),
+            number - frames.start + 1,
+            frames.len()
+        );
+        let cancelled = &interrupt::requested;
+        let made = self.produce(loaded, &scene, options, path, &label, cancelled)?;
+        let picture = self.plane_view(&scene, |view| match view.plane {
+            Plane::Colour => Picture::develop(&made.frame.film, view.transform),
+            _ => view.of(&made.frame.film),
+        });
+        if self.args.json {
+            self.report(path, &scene, options, Some(number), &made)?;
+        }
+        let lack = made.lack.map(|words| unfinished(path, &words));
+        Ok((Pixels::of(&picture), lack))
+    }
+
+    /// What is shown of a scene's films.
+    fn plane_view<T>(&self, scene: &Scene, show: impl FnOnce(PlaneView<'_>) -> T) -> T {
+        let names: Vec<String> = scene.objects().iter().map(|o| o.name.clone()).collect();
+        show(PlaneView {
+            plane: self.args.view,
+            transform: scene.settings().view_transform(),
+            legend: !self.args.no_legend,
+            objects: &names,
+        })
+    }
+
+    /// Renders a scene to the planes that a file of this name needs.
+    fn produce(
+        &self,
+        loaded: &Loaded,
+        scene: &Scene,
+        options: &Options,
+        path: &Path,
+        label: &str,
+        cancelled: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Made, Failure> {
+        let (planes, mut copies) = planes(path, self.args)?;
         if progressive::is_asked(self.args) {
             let [width, height] = scene.settings().size.map(u64::from);
             let bytes = zeroset_scene::progressive::bytes(scene.settings().size, planes);
@@ -101,12 +195,14 @@ impl<'a> Job<'a> {
         (options.limits)
             .check_picture(scene.settings().size, planes, copies)
             .map_err(|e| Failure::new(Exit::Scene, e.to_string()))?;
-        probe(&path)?;
-        if let Some(name) = survey::around_camera(&scene) {
+        if !matches!(Container::of(path)?, Container::Clip(_)) {
+            probe(path)?;
+        }
+        if let Some(name) = survey::around_camera(scene) {
             self.console.note(survey::inside_words(name));
         }
         let progress = Progress {
-            bar: self.console.bar(&label),
+            bar: self.console.bar(label),
             cancelled,
         };
         let restart = || progress.bar.reset();
@@ -118,7 +214,7 @@ impl<'a> Job<'a> {
                     self.args,
                     engine,
                     loaded,
-                    &scene,
+                    scene,
                     planes,
                     &progress,
                     self.console,
@@ -130,13 +226,13 @@ impl<'a> Job<'a> {
             }
             None => self
                 .engine
-                .render(&scene, planes, &progress, &restart)
+                .render(scene, planes, &progress, &restart)
                 .map(|(frame, used)| (frame, used, None))
                 .map_err(Failure::from),
             Some(seconds) => {
                 // beyond some years a limit is none
                 let most = Duration::from_secs_f64(seconds.min(1e9));
-                limited::render(&self.engine, &scene, planes, most, &progress, &restart).map(
+                limited::render(&self.engine, scene, planes, most, &progress, &restart).map(
                     |(frame, used, lack)| {
                         (frame, used, lack.map(|lack| (lack.finished, lack.words())))
                     },
@@ -150,33 +246,30 @@ impl<'a> Job<'a> {
             rendered.film = denoise::denoise(rendered.film, &stop)
                 .ok_or_else(|| Failure::from(RenderError::Cancelled))?;
         }
-        let (finished, lack_words) =
-            lack.map_or((1.0, None), |(share, words)| (share, Some(words)));
-        self.write(
-            &path,
-            &scene,
-            options,
-            &rendered,
-            lack_words.as_deref(),
-            cancelled,
-        )?;
-        self.report(
-            &path,
-            &scene,
-            options,
-            frame.map(|(number, _)| number),
-            &rendered,
-            &used,
+        if self.args.transparent {
+            let cancelled = Progress {
+                bar: self.console.working_bar("background"),
+                cancelled,
+            };
+            let mut background = scene.clone();
+            background.edit_moments(|parts| {
+                parts.objects.clear();
+                Ok::<(), SceneError>(())
+            })?;
+            let behind = self
+                .engine
+                .render(&background, &[Plane::Colour], &cancelled, &|| ());
+            cancelled.bar.finish_and_clear();
+            rendered.film.cut_out(&behind?.0.film);
+        }
+        let (finished, lack) = lack.map_or((1.0, None), |(share, words)| (share, Some(words)));
+        Ok(Made {
+            frame: rendered,
+            used,
             finished,
+            lack,
             convergence,
-        )?;
-        Ok(lack_words.map(|words| {
-            Failure::with_help(
-                Exit::Unfinished,
-                format!("{}: {words}", path.display()),
-                "`zeroset check` estimates what a picture takes; ask for a smaller one, or raise --time-limit",
-            )
-        }))
+        })
     }
 
     fn write(
@@ -202,17 +295,16 @@ impl<'a> Job<'a> {
             notes = notes.with("Unfinished", lack);
         }
         match Container::of(path)? {
-            Container::Exr => write_watched(path, self.console, cancelled, |writer, observer| {
-                exr::write_watched(writer, &rendered.film, &notes, observer)
-            }),
+            Container::Exr => {
+                write_watched(path, self.console, cancelled, |writer, observer| match self
+                    .args
+                    .transparent
+                {
+                    true => exr::write_cut_out(writer, &rendered.film, &notes, observer),
+                    false => exr::write_watched(writer, &rendered.film, &notes, observer),
+                })
+            }
             Container::Png => {
-                let names: Vec<String> = scene.objects().iter().map(|o| o.name.clone()).collect();
-                let view = PlaneView {
-                    plane: self.args.view,
-                    transform: scene.settings().view_transform(),
-                    legend: !self.args.no_legend,
-                    objects: &names,
-                };
                 let depth = if self.args.bits == "16" {
                     Depth::Sixteen
                 } else {
@@ -223,28 +315,38 @@ impl<'a> Job<'a> {
                         png::write_watched(writer, picture, depth, &notes, observer)
                     })
                 };
-                if view.plane == Plane::Colour {
+                self.plane_view(scene, |view| match view.plane {
                     // without a second copy of a picture that may be large
-                    write(&Developed::new(&rendered.film, view.transform))
-                } else {
-                    write(&view.of(&rendered.film))
-                }
+                    Plane::Colour => {
+                        let developed = Developed::new(&rendered.film, view.transform);
+                        match self.args.transparent {
+                            true => write(&developed.cut_out()),
+                            false => write(&developed),
+                        }
+                    }
+                    _ => write(&view.of(&rendered.film)),
+                })
             }
+            // frame by frame, elsewhere
+            Container::Clip(_) => Ok(()),
         }
     }
 
-    #[expect(clippy::too_many_arguments, reason = "what there is to say")]
     fn report(
         &self,
         path: &Path,
         scene: &Scene,
         options: &Options,
         frame: Option<u32>,
-        rendered: &Frame,
-        used: &Used,
-        finished: f64,
-        convergence: Option<(Option<f64>, f64)>,
+        made: &Made,
     ) -> Result<(), Failure> {
+        let Made {
+            frame: rendered,
+            used,
+            finished,
+            convergence,
+            ..
+        } = made;
         let statistics = &rendered.statistics;
         let rays = statistics.rays.max(1) as f64;
         let summary = Summary {
@@ -265,7 +367,7 @@ impl<'a> Job<'a> {
             rays_per_second: statistics.rays as f64 / statistics.seconds.max(1e-9),
             evaluations: Evaluations::of(statistics),
             evaluations_per_ray: statistics.evaluations.total() as f64 / rays,
-            finished,
+            finished: *finished,
             noise: convergence.and_then(|(noise, _)| noise),
             rays_a_pixel: convergence.map(|(_, samples)| samples),
             settings: scene.settings(),
@@ -279,18 +381,52 @@ impl<'a> Job<'a> {
 }
 
 /// The planes that a file needs, and the bytes a pixel that writing it and taking the noise out take beside the film.
-fn planes(path: &Path, view: Plane, denoise: bool) -> Result<(&'static [Plane], u64), Failure> {
+fn planes(path: &Path, args: &RenderArgs) -> Result<(&'static [Plane], u64), Failure> {
+    let (view, denoise) = (args.view, args.denoise);
     let denoising = if denoise { denoise::BYTES } else { 0 };
     let (planes, copies) = match Container::of(path)? {
         // all numbers once more, one plane after the other, and what they are compressed to
         Container::Exr => (&Plane::ALL[..], 2 * 64),
         // colours are written row by row, of others there is a picture, and one with a legend beside it
+        Container::Clip(_) if denoise && view == Plane::Colour => (&denoise::GUIDES[..], 24),
+        // a picture, and one with a legend beside it
+        Container::Clip(_) => (needed(view), 24),
         Container::Png if view != Plane::Colour => (needed(view), 24),
+        // and the film of what is behind
+        Container::Png if args.transparent => (&[Plane::Colour, Plane::Coverage][..], 12),
         Container::Png if denoise => (&denoise::GUIDES[..], 0),
         Container::Png => (needed(view), 0),
     };
     // one after the other
     Ok((planes, copies.max(denoising)))
+}
+
+fn unfinished(path: &Path, words: &str) -> Failure {
+    Failure::with_help(
+        Exit::Unfinished,
+        format!("{}: {words}", path.display()),
+        "`zeroset check` estimates what a picture takes; ask for a smaller one, or raise --time-limit",
+    )
+}
+
+/// A picture in bytes, three a pixel, row by row from the top left.
+pub(crate) struct Pixels {
+    pub(crate) size: [u32; 2],
+    pub(crate) bytes: Vec<u8>,
+}
+
+impl Pixels {
+    fn of(picture: &Picture) -> Pixels {
+        let width = picture.width().max(1) as usize;
+        let bytes = picture.pixels().iter().enumerate().flat_map(|(i, pixel)| {
+            let (x, y) = ((i % width) as u32, (i / width) as u32);
+            pixel.map(|c| tone::quantise8(c, x, y))
+        });
+        Pixels {
+            size: [picture.width(), picture.height()],
+            bytes: bytes.collect(),
+        }
+    }
 }
 
 /// Whether a failure is a rendering that was asked to stop.

@@ -1,5 +1,7 @@
 //! `zeroset render`: one picture, many frames, or again on every save.
 
+mod animate;
+mod ffmpeg;
 mod job;
 mod limited;
 mod progressive;
@@ -10,17 +12,32 @@ mod watch;
 use crate::args::RenderArgs;
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
+use crate::file::make_folder;
 use crate::interrupt;
 use job::Job;
 use std::time::Instant;
+use target::Container;
 
 /// Renders.
 pub(crate) fn run(args: &RenderArgs, console: &Console) -> Result<(), Failure> {
     let job = Job::new(args, console)?;
-    match &args.frames {
+    let clip = match &args.output {
+        Some(path) => match Container::of(path)? {
+            Container::Clip(clip) => Some((path.as_path(), clip)),
+            Container::Png | Container::Exr => None,
+        },
+        None => None,
+    };
+    match (&args.frames, clip) {
+        (None, Some((path, _))) => Err(Failure::with_help(
+            Exit::Usage,
+            format!("{} is an animation", path.display()),
+            "say which frames it has, for example --frames 0..60",
+        )),
+        (Some(frames), Some((path, clip))) => animate::run(&job, path, clip, &frames.0),
         _ if args.watch => watch::run(&job),
-        Some(frames) => run_frames(&job, frames.0.clone()),
-        None => {
+        (Some(frames), None) => run_frames(&job, frames.0.clone()),
+        (None, None) => {
             let loaded = crate::scene::loaded(&args.scene, &job.options, console)?;
             match job.render(&loaded, &job.options, None, &interrupt::requested)? {
                 Some(unfinished) => Err(unfinished),
@@ -34,6 +51,9 @@ pub(crate) fn run(args: &RenderArgs, console: &Console) -> Result<(), Failure> {
 fn run_frames(job: &Job<'_>, frames: std::ops::Range<u32>) -> Result<(), Failure> {
     let start = Instant::now();
     let (count, mut unfinished) = (frames.len(), false);
+    if let Some(path) = &job.args.output {
+        make_folder(path)?;
+    }
     let mut document = crate::scene::document(&job.args.scene, &job.options)?;
     for frame in frames.clone() {
         if interrupt::requested() {

@@ -1,16 +1,32 @@
 //! Where pictures go.
 
+use super::ffmpeg::Codec;
 use crate::failure::{Exit, Failure};
 use crate::file::default_name;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use zeroset_output::format::animation::Kind;
 use zeroset_scene::film::Plane;
+
+/// The name that stands for standard output.
+pub(crate) const STDOUT: &str = "-";
 
 /// A kind of file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Container {
     Png,
     Exr,
+    /// One file of all frames.
+    Clip(Clip),
+}
+
+/// A kind of animation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Clip {
+    /// What we write.
+    Own(Kind),
+    /// What ffmpeg writes.
+    Video(Codec),
 }
 
 impl Container {
@@ -20,10 +36,17 @@ impl Container {
         match ending.as_deref() {
             Some("png") => Ok(Container::Png),
             Some("exr") => Ok(Container::Exr),
+            Some("gif") => Ok(Container::Clip(Clip::Own(Kind::Gif))),
+            Some("apng") => Ok(Container::Clip(Clip::Own(Kind::Apng))),
+            Some("y4m") => Ok(Container::Clip(Clip::Own(Kind::Y4m))),
+            Some("mp4") => Ok(Container::Clip(Clip::Video(Codec::Mp4))),
+            Some("webm") => Ok(Container::Clip(Clip::Video(Codec::Webm))),
+            _ if path == Path::new(STDOUT) => Ok(Container::Clip(Clip::Own(Kind::Y4m))),
             _ => Err(Failure::with_help(
                 Exit::Usage,
                 format!("{} does not say what kind of picture it is", path.display()),
-                "end the name in .png, or in .exr for all planes as layers",
+                "end the name in .png, or in .exr for all planes as layers; with --frames in .gif, .apng, .mp4, .webm or .y4m for one file of \
+                 all frames",
             )),
         }
     }
