@@ -89,7 +89,7 @@ fn what_is_written_is_read_back_to_the_bit() {
             );
             let check = mend(&mut back);
             assert!(
-                check.watertight && check.flipped % 4 == 0 && check.holes == 0,
+                check.watertight && check.flipped.is_multiple_of(4) && check.holes == 0,
                 "{target:?}"
             );
         }
