@@ -272,6 +272,13 @@ fn no_name_is_missing() {
 /// Examples of the pages are scenes.
 #[test]
 fn examples_load() {
+    // the files that they speak of
+    let folder = tempfile::tempdir().unwrap();
+    let disc =
+        "x var-x\ny var-y\na square x\nb square y\nc add a b\nd sqrt c\nr const 0.5\nout sub d r\n";
+    for name in ["prospero.vm", "bear.vm"] {
+        std::fs::write(folder.path().join(name), disc).unwrap();
+    }
     for name in ["formulas.md", "coming-from.md"] {
         let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
             .join("../../docs")
@@ -283,7 +290,13 @@ fn examples_load() {
         let mut count = 0;
         for block in page.split("```python\n").skip(1) {
             let (text, _) = block.split_once("```").expect("the end of an example");
-            let loaded = load_text("scene.star", text, Language::Starlark, None, &options);
+            let loaded = load_text(
+                "scene.star",
+                text,
+                Language::Starlark,
+                Some(folder.path()),
+                &options,
+            );
             if let Err(failed) = loaded {
                 panic!("{name}: {}\n{text}", failed.report);
             }
