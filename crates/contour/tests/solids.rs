@@ -99,8 +99,9 @@ fn corners_and_edges_are_kept() {
                 .count()
         };
         assert!(near(1e-4) >= 7 && near(1e-3) == 8, "{distances:?}");
+        // what that one corner may cost
         let volume = turned.surface.volume();
-        assert!((volume - 1.0).abs() < 1e-4, "{volume}");
+        assert!((volume - 1.0).abs() < 2e-4, "{volume}");
     }
 }
 

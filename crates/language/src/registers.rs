@@ -242,6 +242,7 @@ fn operation(
 #[cfg(test)]
 mod tests {
     use super::{Registers, RegistersError};
+    use proptest::prelude::*;
     use zeroset_catalogue::bounds::Aabb;
     use zeroset_field::formula::{Budget, Builder, Formula};
     use zeroset_number::{F64, v3};
@@ -281,6 +282,25 @@ mod tests {
         let formula = Formula::prove(steps, Aabb::centred([2.0; 3]), &Budget::default());
         let slope = formula.expect("a bound").slope();
         assert!((1.0..1.01).contains(&slope), "{slope}");
+    }
+
+    proptest! {
+        /// Whatever stands there, it is read or refused; what is read is a formula, or none for a reason.
+        #[test]
+        fn any_lines_are_read_or_refused(lines in prop::collection::vec(
+            ("[a-d]", "(const|var-[xyz]|neg|sqrt|square|recip|ln|ceil|add|mul|div|mod|pow|atan2|max|#|foo)", "[a-d0-9.e-]{0,4}", "[a-d]?"),
+            0..12,
+        )) {
+            let mut text = String::new();
+            for (k, (name, word, a, b)) in lines.iter().enumerate() {
+                text += &format!("{name}{k} {word} {a} {b}\n{name} {word} {a}{k} {b}\n");
+            }
+            if let Ok(list) = Registers::parse(&text) {
+                let builder = Builder::new();
+                let value = list.write(&builder, &builder.point());
+                let _ = builder.finish(&value);
+            }
+        }
     }
 
     #[test]

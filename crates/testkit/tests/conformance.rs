@@ -455,8 +455,8 @@ const FAULTS: [(&str, &str, &str, Plane); 10] = [
     ),
     (
         "bent normals that are ignored",
-        "seen.open, seen.bent,",
-        "seen.open, at.normal,",
+        "seen.open, seen.tint, seen.bent,",
+        "seen.open, seen.tint, at.normal,",
         Plane::Colour,
     ),
     (

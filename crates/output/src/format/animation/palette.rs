@@ -177,7 +177,7 @@ impl Mixer {
         let first = self.nearest(pixel);
         let near = self.colours[first];
         // what lies on the other side of the pixel
-        for far in [1.0, 2.0, 4.0] {
+        for far in [1.0, 2.0, 4.0, 8.0, 16.0] {
             let beyond = std::array::from_fn(|k| {
                 let c = f32::from(pixel[k]);
                 (c + far * (c - near[k] / SEEN[k])).clamp(0.0, 255.0) as u8
