@@ -24,7 +24,8 @@ pub enum Closed {
 }
 
 impl Closed {
-    /// The distance at which a ray from outside meets it; infinite where it does not. `d` has length 1.
+    /// The distance at which a ray meets it; infinite where it does not, zero where it begins in a half space. One that begins in a ball goes
+    /// through its surface. `d` has length 1.
     #[inline(always)]
     pub fn meet<R: Real<Scalar = f32>>(&self, o: Vec3<R>, d: Vec3<R>) -> R {
         match *self {
@@ -43,8 +44,10 @@ fn half_space<R: Real<Scalar = f32>>(
 ) -> R {
     let height = o.x * x + o.y * y + o.z * z - offset;
     let fall = -(d.x * x + d.y * y + d.z * z);
-    let meets = height.above(0.0) & fall.above(0.0);
-    R::select(meets, height / fall, height.lit(f32::INFINITY))
+    let outside = height.above(0.0);
+    let falls = R::select(fall.above(0.0), height / fall, height.lit(f32::INFINITY));
+    // where two solids touch, a ray from the one may begin a rounding inside the other: no light comes from there
+    R::select(outside, falls, height.lit(0.0))
 }
 
 /// By the distance of the middle from the ray, which stays exact where a small ball is far away (Haines et al. 2019, Precision Improvements

@@ -121,7 +121,7 @@ camera(eye = (0, 1, 3), target = (0, 0.4, 0))\nrender(integrator = path(3))";
 /// Where samples are uneven, a wide filter still weighs all places around a pixel alike, and every plane is what even samples make it.
 #[test]
 fn uneven_samples_are_weighed() {
-    let text = "show(sphere(0.5).move(y = 0.5))\nshow(plane())\ncamera(eye = (0, 1, 3), target = (0, 0.4, 0))
+    let text = "show((sphere(0.5) & box(1)).move(y = 0.5))\nshow(plane())\ncamera(eye = (0, 1, 3), target = (0, 0.4, 0))
 render(integrator = path(2), aa = supersample(16, \"mitchell\"))";
     let scene = scene(text, [140, 40]);
     let renderer = CpuRenderer::new(Some(2)).unwrap();

@@ -361,8 +361,8 @@ const IN_SHADERS: [ShaderFault; 48] = [
     ),
     (
         "ambient light by the mirror image of the normal",
-        "seen.open, seen.bent,",
-        "seen.open, -seen.bent,",
+        "seen.open, seen.tint, seen.bent,",
+        "seen.open, seen.tint, -seen.bent,",
         "ambient light",
     ),
     (
