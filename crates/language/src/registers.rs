@@ -120,8 +120,8 @@ impl Registers {
         }
     }
 
-    /// Operations.
-    pub fn len(&self) -> usize {
+    /// How many operations it takes.
+    pub fn operations(&self) -> usize {
         self.operations.len()
     }
 
@@ -276,7 +276,7 @@ mod tests {
         let builder = Builder::new();
         let registers = Registers::parse(ball).expect("a list");
         assert!(registers.is_solid());
-        assert_eq!(registers.len(), 11);
+        assert_eq!(registers.operations(), 11);
         let value = registers.write(&builder, &builder.point());
         let steps = builder.finish(&value).expect("a formula");
         let formula = Formula::prove(steps, Aabb::centred([2.0; 3]), &Budget::default());

@@ -557,7 +557,7 @@ impl<'a> Machine<'a> {
         arguments: &[Argument<'a>],
         place: Place,
     ) -> Run<Value> {
-        self.charge(list.len() as u64)?;
+        self.charge(list.operations() as u64)?;
         let wrong = |message: String, at: Place| {
             let m = mistake(message);
             m.help("hand it to field(...) or to field2d(...), or call it with their point: f(p)")
@@ -568,7 +568,7 @@ impl<'a> Machine<'a> {
             return Err(wrong(message, place));
         };
         let wanted = if list.is_solid() { 3 } else { 2 };
-        let value = match self.formula_of([argument.value].into_iter()) {
+        let value = match self.formula_of([argument.value]) {
             Some(builder) => self
                 .operand(&builder, argument.value)?
                 .filter(|point| (wanted..=3).contains(&point.parts()))

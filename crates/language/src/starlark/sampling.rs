@@ -111,7 +111,7 @@ fn load_vm(c: &mut Call<'_, '_>) -> Run<Value> {
     c.machine.charge(bytes.len() as u64 / 16)?;
     let text = files::text(bytes.to_vec(), &file).map_err(|e| told(e.to_string()))?;
     let list = Registers::parse(&text).map_err(|e| told(format!("\"{file}\": {e}")))?;
-    c.machine.grow(list.len() * size_of::<[f64; 3]>())?;
+    c.machine.grow(list.operations() * size_of::<[f64; 3]>())?;
     Ok(c.machine.charged_thing(Thing::Registers(Arc::new(list))))
 }
 
