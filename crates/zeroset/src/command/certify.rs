@@ -107,7 +107,8 @@ pub(crate) fn run(args: &CertifyArgs, console: &Console) -> Result<(), Failure> 
     let wrong = found.count(Verdict::Wrong);
     if wrong > 0 {
         let message = format!("{wrong} pixels show what is not there, or not what is");
-        let help = "a slope that is stated may be too low: `zeroset check` says where; else more steps may be needed (--max-steps)";
+        let help = "what is thinner than a sixteenth of a pixel is passed: a larger --size shows it; where a slope is stated it may be too low: \
+                    `zeroset check` says where, `zeroset why SCENE X Y` what a ray met";
         return Err(Failure::with_help(Exit::Job, message, help));
     }
     if 100.0 * found.proven() < args.at_least {
