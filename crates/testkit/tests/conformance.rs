@@ -138,13 +138,7 @@ fn the_gpu_shows_every_scene_as_the_simd_renderer() {
         return;
     };
     let renderer = CpuRenderer::new(None).unwrap();
-    // these take a driver in software longest, and ask for nothing that others do not
-    let alike = |name: &str| {
-        name.starts_with("bench/")
-            || ["papers/evans_figure_9", "papers/evans_figure_11"].contains(&name)
-    };
-    let scenes = every_scene().into_iter().filter(|(name, _)| !alike(name));
-    let all = scenes.filter_map(|(name, scene)| {
+    let all = every_scene().into_iter().filter_map(|(name, scene)| {
         check(&name, &scene, &on(&gpu, &scene), &on(&renderer, &scene))
     });
     none(all.collect());

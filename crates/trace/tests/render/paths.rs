@@ -67,7 +67,8 @@ fn threads_do_not_change_what_comes_of_rays_that_go_on() {
 /// Pictures of few rays with many seeds against one of many rays: their mean is right, by as much as their own variance says.
 #[test]
 fn paths_have_the_right_mean_for_any_seed() {
-    const SEEDS: u32 = 48;
+    // what is bright is rare, and where few samples missed it they think their variance small: that fades with their number
+    const SEEDS: u32 = 72;
     let size = [16, 12];
     // with a sun without a width there are no caustics, whose tails are so long that few samples do not know their variance
     let table = |samples| {
@@ -110,8 +111,7 @@ fn paths_have_the_right_mean_for_any_seed() {
         far * 50 < right.len(),
         "{far} of {count} pixels are far off"
     );
-    // what is bright is rare: where few samples missed it, they think their variance small
-    assert!((all / count).abs() < 0.4, "mean z: {}", all / count);
+    assert!((all / count).abs() < 0.35, "mean z: {}", all / count);
     assert!(spread / count < 3.0, "mean square of z: {}", spread / count);
 }
 
