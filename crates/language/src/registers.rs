@@ -3,6 +3,7 @@
 //! A line is a name, an operation and what it is done with: `_2 add _0 _1`. A name is any word; what it stands for is given once, before it is
 //! used. The value of the last line is that of the formula. `#` begins a comment.
 
+use crate::json::formula::UNARY;
 use std::collections::HashMap;
 use zeroset_catalogue::op::arithmetic::{Binary, Unary};
 use zeroset_field::formula::{Builder, Expression};
@@ -49,21 +50,6 @@ pub enum RegistersError {
     Empty,
 }
 
-const UNARY: [(&str, Unary); 13] = [
-    ("neg", Unary::Neg),
-    ("abs", Unary::Abs),
-    ("sqrt", Unary::Sqrt),
-    ("square", Unary::Square),
-    ("floor", Unary::Floor),
-    ("sin", Unary::Sin),
-    ("cos", Unary::Cos),
-    ("tan", Unary::Tan),
-    ("asin", Unary::Asin),
-    ("acos", Unary::Acos),
-    ("atan", Unary::Atan),
-    ("exp", Unary::Exp),
-    ("ln", Unary::Ln),
-];
 const MADE: [(&str, Made); 3] = [
     ("ceil", Made::Ceil),
     ("round", Made::Round),
@@ -213,7 +199,7 @@ fn operation(
         takes(0)?;
         return Ok(Operation::Coordinate(k));
     }
-    if let Some(f) = named(&UNARY, word) {
+    if let Some(f) = named(UNARY, word) {
         takes(1)?;
         return Ok(Operation::Unary(f, value(0)?));
     }

@@ -42,6 +42,18 @@ pub(crate) fn make_folder(path: &Path) -> Result<(), Failure> {
     }
 }
 
+/// Refuses a name that does not end in .png; `what` is written so.
+pub(crate) fn only_png(path: &Path, what: &str) -> Result<(), Failure> {
+    match path.extension() {
+        Some(ending) if ending.eq_ignore_ascii_case("png") => Ok(()),
+        _ => Err(Failure::with_help(
+            Exit::Usage,
+            format!("{} does not end in .png", path.display()),
+            format!("{what} are written as PNG"),
+        )),
+    }
+}
+
 /// Writes text to a file.
 pub(crate) fn write_text(path: &Path, text: &str) -> Result<(), Failure> {
     let _asking = Asking::begin();
@@ -83,5 +95,33 @@ impl Observer for Progress<'_> {
 
     fn is_cancelled(&self) -> bool {
         (self.cancelled)()
+    }
+}
+
+/// A bar of shares of what takes long, and Ctrl-C.
+pub(crate) struct Shares(pub(crate) ProgressBar);
+
+impl Shares {
+    fn show(&self, share: f64) {
+        self.0.set_length(1000);
+        self.0.set_position((1000.0 * share) as u64);
+    }
+}
+
+impl zeroset_volume::bake::Watch for Shares {
+    fn advance(&self, share: f64) {
+        self.show(share);
+    }
+    fn is_stopped(&self) -> bool {
+        interrupt::requested()
+    }
+}
+
+impl zeroset_contour::Watch for Shares {
+    fn advance(&self, share: f64) {
+        self.show(share);
+    }
+    fn is_stopped(&self) -> bool {
+        interrupt::requested()
     }
 }

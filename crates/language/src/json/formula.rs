@@ -11,7 +11,7 @@ use zeroset_field::formula::{
 };
 
 /// Names of functions of one step.
-const UNARY: &[(&str, Unary)] = &[
+pub(crate) const UNARY: &[(&str, Unary)] = &[
     ("neg", Unary::Neg),
     ("abs", Unary::Abs),
     ("sqrt", Unary::Sqrt),

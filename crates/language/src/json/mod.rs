@@ -15,7 +15,7 @@
 //! - Numbers are those of the scene: finite, and in the ranges that the language allows. A scene that has others (one that
 //!   a program made) cannot be written, and [`expand`] says which number it is.
 
-mod formula;
+pub(crate) mod formula;
 mod locate;
 mod parse;
 mod read;

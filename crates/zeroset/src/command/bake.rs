@@ -3,10 +3,9 @@
 use crate::args::{BakeArgs, EdtArgs, SceneArgs};
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
-use crate::file::write_watched;
-use crate::interrupt::{self, Asking};
+use crate::file::{Shares, only_png, write_watched};
+use crate::interrupt::Asking;
 use crate::json;
-use indicatif::ProgressBar;
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
@@ -19,26 +18,13 @@ use zeroset_output::format::Metadata;
 use zeroset_output::format::png::{Depth, write_watched as write_watched_png};
 use zeroset_output::format::read::read as read_picture;
 use zeroset_output::picture::Picture;
-use zeroset_volume::bake::{Bake, BakeError, Watch, sample};
+use zeroset_volume::bake::{Bake, BakeError, sample};
 use zeroset_volume::check::{Check, MOST_CROSSINGS, crossings, mend};
 use zeroset_volume::file::{VolumeFormat, write};
 use zeroset_volume::mesh::{Mesh, MeshLimits};
 use zeroset_volume::read::{MeshFormat, read};
 use zeroset_volume::transform::signed;
 use zeroset_volume::volume::Volume;
-
-/// A bar of shares, and Ctrl-C.
-struct Shares(ProgressBar);
-
-impl Watch for Shares {
-    fn advance(&self, share: f64) {
-        self.0.set_length(1000);
-        self.0.set_position((1000.0 * share) as u64);
-    }
-    fn is_stopped(&self) -> bool {
-        interrupt::requested()
-    }
-}
 
 /// What `--json` prints.
 #[derive(Serialize)]
@@ -318,11 +304,7 @@ fn of_scene(
 
 /// Draws the signed distance transform of a picture.
 pub(crate) fn edt(args: &EdtArgs, console: &Console) -> Result<(), Failure> {
-    if (args.output.extension()).is_none_or(|e| !e.eq_ignore_ascii_case("png")) {
-        let message = format!("{} does not end in .png", args.output.display());
-        let help = "distance transforms are written as PNG";
-        return Err(Failure::with_help(Exit::Usage, message, help));
-    }
+    only_png(&args.output, "distance transforms")?;
     probe(&args.output)?;
     let picture = read_picture(&args.image)?;
     let size = [picture.width() as usize, picture.height() as usize, 1];

@@ -3,7 +3,7 @@
 use crate::args::CertifyArgs;
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
-use crate::file::{Progress, write_watched};
+use crate::file::{Progress, only_png, write_watched};
 use crate::interrupt::{self, Asking};
 use crate::json;
 use serde::Serialize;
@@ -44,6 +44,9 @@ struct Numbers {
 /// Proves a picture pixel by pixel.
 pub(crate) fn run(args: &CertifyArgs, console: &Console) -> Result<(), Failure> {
     let _asking = Asking::begin();
+    if let Some(path) = &args.output {
+        only_png(path, "maps")?;
+    }
     let options = crate::scene::options(&args.scene, args.size.map(|size| size.0))?;
     let scene = crate::scene::loaded(&args.scene, &options, console)?.scene;
     let size = scene.settings().size;
@@ -51,17 +54,6 @@ pub(crate) fn run(args: &CertifyArgs, console: &Console) -> Result<(), Failure> 
         .check_picture(size, &[Plane::Depth, Plane::Coverage], 16)
         .map_err(|e| Failure::new(Exit::Scene, e.to_string()))?;
     if let Some(path) = &args.output {
-        if path
-            .extension()
-            .is_none_or(|e| !e.eq_ignore_ascii_case("png"))
-        {
-            let message = format!("{} does not end in .png", path.display());
-            return Err(Failure::with_help(
-                Exit::Usage,
-                message,
-                "maps are written as PNG",
-            ));
-        }
         probe(path)?;
     }
     let name = scene.name().to_owned();

@@ -3,12 +3,11 @@
 use crate::args::MeshArgs;
 use crate::console::{Console, grouped};
 use crate::failure::{Exit, Failure};
-use crate::file::make_folder;
-use crate::interrupt::{self, Asking};
+use crate::file::{Shares, make_folder};
+use crate::interrupt::Asking;
 use crate::json;
 use crate::paint::Painter;
 use crate::reference::shortest;
-use indicatif::ProgressBar;
 use serde::Serialize;
 use std::io::Write;
 use zeroset_catalogue::bounds::Aabb;
@@ -24,19 +23,6 @@ use zeroset_volume::write::{Painted, Surfacing, Target, write};
 
 /// The tolerance where none is asked for: a thousandth of the longest side of what there is.
 const USUAL: f64 = 1e-3;
-
-/// A bar of shares, and Ctrl-C.
-struct Shares(ProgressBar);
-
-impl Watch for Shares {
-    fn advance(&self, share: f64) {
-        self.0.set_length(1000);
-        self.0.set_position((1000.0 * share) as u64);
-    }
-    fn is_stopped(&self) -> bool {
-        interrupt::requested()
-    }
-}
 
 /// What `--json` prints.
 #[derive(Serialize)]

@@ -3,7 +3,7 @@
 use crate::args::SliceArgs;
 use crate::console::Console;
 use crate::failure::{Exit, Failure};
-use crate::file::{default_name, write_watched};
+use crate::file::{default_name, only_png, write_watched};
 use zeroset::section::SectionPlane;
 use zeroset_catalogue::bounds::Aabb;
 use zeroset_field::program::{Limits, Program};
@@ -29,17 +29,7 @@ pub(crate) fn run(args: &SliceArgs, console: &Console) -> Result<(), Failure> {
         Some(path) => path.clone(),
         None => default_name(&args.scene.scene, "-slice.png")?,
     };
-    if path
-        .extension()
-        .is_none_or(|e| !e.eq_ignore_ascii_case("png"))
-    {
-        let message = format!("{} does not end in .png", path.display());
-        return Err(Failure::with_help(
-            Exit::Usage,
-            message,
-            "sections are written as PNG",
-        ));
-    }
+    only_png(&path, "sections")?;
     let invalid = |error: String| Failure::new(Exit::Scene, error);
     // a value and a slope a pixel, the picture, and the picture with a legend beside it
     let planes = [film::Plane::Residual, film::Plane::Steps];
