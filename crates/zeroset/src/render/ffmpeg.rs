@@ -5,6 +5,7 @@ use std::fs;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, Stdio};
+use tempfile::TempDir;
 
 /// The program.
 const PROGRAM: &str = "ffmpeg";
@@ -63,18 +64,8 @@ const FILTER: &str =
 pub(crate) struct Encoder {
     child: Child,
     frames: Option<ChildStdin>,
-    folder: Folder,
+    folder: TempDir,
     file: PathBuf,
-}
-
-/// A folder that goes away.
-struct Folder(PathBuf);
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        // nothing depends on it
-        let _ = fs::remove_dir_all(&self.0);
-    }
 }
 
 impl Encoder {
@@ -107,9 +98,13 @@ impl Encoder {
         [width, height]: [u32; 2],
         rate: f64,
     ) -> Result<Encoder, Failure> {
-        let folder = Folder(folder().map_err(|e| broken(&e))?);
+        // a folder of one's own for the video until it is whole
+        let folder = tempfile::Builder::new()
+            .prefix("zeroset-video-")
+            .tempdir()
+            .map_err(|e| broken(&e))?;
         // MP4 is not written from its beginning to its end: it needs a file
-        let file = folder.0.join("video").with_extension(codec.ending());
+        let file = folder.path().join("video").with_extension(codec.ending());
         let mut child = Command::new(PROGRAM)
             .args(["-hide_banner", "-loglevel", "error", "-nostdin", "-y"])
             .args(["-f", "rawvideo", "-pix_fmt", "rgb24"])
@@ -177,7 +172,7 @@ impl Encoder {
             words = String::from_utf8_lossy(&bytes).into_owned();
         }
         let _ = self.child.wait();
-        let place = self.folder.0.to_string_lossy().into_owned();
+        let place = self.folder.path().to_string_lossy().into_owned();
         let lines: Vec<&str> = words.lines().filter(|l| !l.trim().is_empty()).collect();
         let last = lines[lines.len().saturating_sub(LINES)..].join(" ");
         let last = zeroset_output::display::clean(&last).replace(&place, "");
@@ -201,18 +196,4 @@ impl Drop for Encoder {
 
 fn broken(error: &io::Error) -> Failure {
     Failure::new(Exit::Job, format!("ffmpeg cannot be run: {error}"))
-}
-
-/// A folder of one's own for the video until it is whole.
-fn folder() -> io::Result<PathBuf> {
-    let id = std::process::id();
-    let mut tries = 0;
-    loop {
-        let path = std::env::temp_dir().join(format!("zeroset-video-{id}-{tries}"));
-        match fs::create_dir(&path) {
-            Ok(()) => return Ok(path),
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists && tries < 100 => tries += 1,
-            Err(error) => return Err(error),
-        }
-    }
 }
