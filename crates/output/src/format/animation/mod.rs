@@ -110,7 +110,7 @@ pub fn check(kind: Kind, timing: &Timing) -> Result<(), String> {
     }
     if kind == Kind::Gif && rate > FASTEST_GIF {
         return Err(format!(
-            "a GIF has at most {FASTEST_GIF} frames a second, not {rate}: .png and .mp4 have more"
+            "a GIF has at most {FASTEST_GIF} frames a second, not {rate}: .apng and .mp4 have more"
         ));
     }
     if kind == Kind::Gif && size.iter().any(|n| *n > LARGEST_GIF) {
