@@ -89,6 +89,10 @@ pub fn render(mut scene: Scene) {
         Occlusion::Hemisphere { rays, .. } | Occlusion::Obscurance { rays, .. } => {
             *rays = (*rays).min(4);
         }
+        // whose volume is made before the picture is begun, which a deadline does not end
+        Occlusion::Skylight { resolution, .. } | Occlusion::Curvature { resolution, .. } => {
+            *resolution = (*resolution).min(16);
+        }
         _ => {}
     };
     let changed = scene.edit(|s| {
