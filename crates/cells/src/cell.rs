@@ -1,6 +1,6 @@
 //! One cell: a box with its tapes, and its eight parts as soon as somebody looks there.
 
-use crate::Cut;
+use crate::{Cut, STEEPEST};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, OnceLock};
 use zeroset_catalogue::tape::{Code, Instruction, Tape};
@@ -38,8 +38,11 @@ pub(crate) struct Cell {
     marks: OnceLock<Arc<Code>>,
     /// What its tape and its slope hold for, beyond its sides.
     margin: f32,
-    /// How far the sign stays for each unit of the value, within the margin: one over the slope. 1 where no slope is known.
+    /// How far the sign stays for each unit of the value, within the margin: one over the slope. Where no slope is known 1, or 0 if values
+    /// are no bounds.
     free: f32,
+    /// Whether there is one sign all over it and its margin.
+    clear: bool,
     /// Cuts that have not made the tape shorter, nor the slope less.
     vain: u8,
     /// None in a cell that is not cut.
@@ -70,6 +73,7 @@ impl Cell {
     pub(crate) fn whole(
         min: [f32; 3],
         max: [f32; 3],
+        free: f32,
         values: &Arc<Code>,
         marks: &Arc<Code>,
     ) -> Cell {
@@ -81,7 +85,8 @@ impl Cell {
             values: Arc::clone(values),
             marks: OnceLock::from(Arc::clone(marks)),
             margin: 0.0,
-            free: 1.0,
+            free,
+            clear: false,
             vain: 0,
             parts: cut.then(Box::default),
         }
@@ -179,18 +184,21 @@ impl Cell {
         let side = max[0] - min[0];
         let margin = if cut.slopes { MARGIN * side } else { 0.0 };
         let (values, is_shorter) = pruned(&self.values, data, min, max, margin);
-        let free = if cut.slopes {
-            free(&values, data, min, max, margin).max(self.free)
+        let (free, clear) = if cut.slopes {
+            let (free, clear) = free(&values, data, min, max, margin, cut.unbounded);
+            (free.max(self.free), clear && cut.unbounded)
         } else {
-            1.0
+            (1.0, false)
         };
         let is_better = is_shorter || free * FLATTER > self.free;
-        let vain = match is_better || side > cut.coarse {
+        // what is not known yet may be in a part, however often it was not
+        let is_hopeful = cut.unbounded && free == 0.0;
+        let vain = match is_better || is_hopeful || side > cut.coarse {
             true => 0,
             false => self.vain + 1,
         };
         let is_long = values.instructions.len() > SHORT || cut.slopes;
-        let is_cut = is_long && vain < PATIENCE && side > cut.finest;
+        let is_cut = is_long && !clear && vain < PATIENCE && side > cut.finest;
         Cell {
             min,
             max,
@@ -199,6 +207,7 @@ impl Cell {
             marks: OnceLock::new(),
             margin,
             free,
+            clear,
             vain,
             parts: is_cut.then(Box::default),
         }
@@ -225,6 +234,22 @@ impl Cell {
         free.max(f.abs()).copysign(f)
     }
 
+    /// As [`Cell::widen`], where the value alone is no bound; 0 where nothing is known.
+    pub(crate) fn free_around(&self, p: [f32; 3], f: f32) -> f32 {
+        let inside = |k: usize| (p[k] - self.min[k]).min(self.max[k] - p[k]);
+        let border = (self.margin + inside(0).min(inside(1)).min(inside(2))) * 0.999;
+        let by = f.abs() * self.free;
+        // not `min`: a value that is no number says nothing
+        let free = if self.clear || by >= border {
+            border
+        } else if by > 0.0 {
+            by
+        } else {
+            0.0
+        };
+        free.copysign(f)
+    }
+
     /// Bytes of it, as a part of another one.
     pub(crate) fn size(&self, parent: &Cell) -> usize {
         let parts = self.parts.as_ref().map_or(0, |_| size_of::<Parts>());
@@ -241,17 +266,32 @@ fn middle(min: [f32; 3], max: [f32; 3]) -> [f32; 3] {
     std::array::from_fn(|k| 0.5 * (min[k] + max[k]))
 }
 
-/// One over the Lipschitz constant of a tape in a box, a hair less; 1 where it is not known to be below 1.
-fn free(code: &Code, data: &Data, min: [f32; 3], max: [f32; 3], margin: f32) -> f32 {
+/// One over the Lipschitz constant of a tape in a box, a hair less, and whether its value has one sign there. Where the constant is not known to
+/// be below 1, the first is 1 if the value is a bound; if it is `unbounded`, 0 where the constant is above [`STEEPEST`].
+fn free(
+    code: &Code,
+    data: &Data,
+    min: [f32; 3],
+    max: [f32; 3],
+    margin: f32,
+    unbounded: bool,
+) -> (f32, bool) {
     let side = |k: usize| Interval::new((min[k] - margin).into(), (max[k] + margin).into());
     let within = Slope::point(v3(side(0), side(1), side(2)));
-    let slope = Point::<Slope>::new(Tape { code, data }).value(within).l;
+    let found = Point::<Slope>::new(Tape { code, data }).value(within);
+    // ranges are of exact numbers: values of single precision that close to zero may have the other sign
+    let least = f64::from(f32::MIN_POSITIVE);
+    let clear = found.v.lo > least || found.v.hi < -least;
+    let slope = found.l;
     // also where it is infinite
-    if slope < 1.0 {
+    let free = if slope < 1.0 || (unbounded && slope <= STEEPEST) {
         ((1.0 - 1e-5) / slope.max(1e-9)) as f32
+    } else if unbounded {
+        0.0
     } else {
         1.0
-    }
+    };
+    (free, clear)
 }
 
 /// What is left of a tape in a box and the margin around it, and whether that is much less.

@@ -8,6 +8,9 @@
 //! Where a program divides by a large Lipschitz constant, because a formula is steep somewhere, cells know more: how much its value changes
 //! in them at most (Galin et al. 2020). [`Cells::widen`] makes of a value how far a ray may go from there.
 //!
+//! Where a formula has no Lipschitz constant at all, values are no bounds. Then only cells say how far a ray may go: by their own slopes, or to
+//! where they end, if their ranges leave zero out. Where neither helps, [`Cells::widen`] gives 0, and whoever is there has to look closer.
+//!
 //! The one way in is [`Cells::values`], [`Cells::gradients`] and [`Cells::marks`], which do for the points of a workspace what the
 //! functions of the same names in [`zeroset_eval`] do with one tape: points are sorted by their cells, so that SIMD batches share a tape.
 //!
@@ -57,6 +60,9 @@ pub const BUDGET: usize = 256 << 20;
 /// Programs that divide by this much and more have cells for their slopes, however short they are.
 pub const STEEP: f64 = 16.0;
 
+/// In cells whose values change by more than this a unit, where the surface may be, a ray gets along no better than by ranges.
+const STEEPEST: f64 = 32.0;
+
 /// How far cells with slopes go beyond what they are made around, in its sizes: outside, formulas are continued.
 const REACH_OF_SLOPES: f32 = 1.25;
 /// Cells with slopes are cut so often at most, and less often where the budget would not hold all that there can be: how far a ray goes
@@ -79,6 +85,8 @@ pub struct Cells {
     root: Cell,
     /// All that lies beyond the root.
     beyond: Cell,
+    /// What they are made around: two corners.
+    around: [[f32; 3]; 2],
     cut: Cut,
     count: AtomicUsize,
     bytes: AtomicUsize,
@@ -99,6 +107,10 @@ struct Cut {
     points: u32,
     /// Whether cells have slopes.
     slopes: bool,
+    /// Whether the program has none.
+    unbounded: bool,
+    /// Whether what has none may reach beyond what the cells are made around.
+    open: bool,
 }
 
 /// What cells have cost, and what they have saved.
@@ -127,7 +139,8 @@ impl Cells {
         if !can_be_pruned(program) {
             return None;
         }
-        let slopes = program.slope() >= STEEP && !program.is_fractal();
+        let unbounded = program.is_unbounded() && !program.is_fractal();
+        let slopes = unbounded || (program.slope() >= STEEP && !program.is_fractal());
         if (structure.values.instructions.len() < LEAST_INSTRUCTIONS && !slopes)
             || around.is_empty()
             || !around.is_finite()
@@ -157,6 +170,8 @@ impl Cells {
                 // how far a ray goes must not depend on who was there before
                 points: 0,
                 slopes,
+                unbounded,
+                open: false,
             }
         } else {
             Cut {
@@ -165,15 +180,19 @@ impl Cells {
                 budget,
                 points: POINTS,
                 slopes,
+                unbounded,
+                open: false,
             }
         };
-        let root = Cell::whole(min, max, &whole, &marks);
-        let beyond = Cell::whole([0.0; 3], [0.0; 3], &whole, &marks);
+        let free = if unbounded { 0.0 } else { 1.0 };
+        let root = Cell::whole(min, max, free, &whole, &marks);
+        let beyond = Cell::whole([0.0; 3], [0.0; 3], free, &whole, &marks);
         Some(Cells {
             program: program.clone(),
             bytes: AtomicUsize::new(2 * cell::bytes(&whole) + cell::bytes(&marks)),
             root,
             beyond,
+            around: [around.min, around.max].map(|corner| corner.map(|c| c as f32)),
             cut,
             count: AtomicUsize::new(1),
             instructions: AtomicU64::new(0),
@@ -184,6 +203,12 @@ impl Cells {
     /// Cells that are made at the first point that is looked for in them, and not where many are.
     pub fn eager(mut self) -> Cells {
         self.cut.points = 0;
+        self
+    }
+
+    /// Cells of a program in which something without a Lipschitz constant reaches beyond what the cells are made around.
+    pub fn open(mut self) -> Cells {
+        self.cut.open = true;
         self
     }
 
@@ -305,7 +330,7 @@ impl Cells {
     }
 
     /// From the values at the first `n` points of the workspace, how far around each of them the field keeps its sign: the value over the
-    /// slope of the cell, as far as that holds, and no less than the value. The sign stays.
+    /// slope of the cell, as far as that holds, and no less than the value where this is a bound. The sign stays; 0 where nothing is known.
     pub fn widen(&self, work: &mut Workspace, n: usize) {
         if !self.cut.slopes {
             return;
@@ -320,8 +345,26 @@ impl Cells {
                 None => self.find(p, Side::Values),
             };
             last = Some(cell);
-            values[i] = cell.widen(p, values[i]);
+            values[i] = if !self.cut.unbounded {
+                cell.widen(p, values[i])
+            } else if self.root.holds(p) {
+                cell.free_around(p, values[i])
+            } else {
+                self.free_beyond(p, values[i])
+            };
         }
+    }
+
+    /// As [`Cells::widen`], beyond the root: what has no slope is no nearer than the box that it is in, and the rest of the program has bounds.
+    fn free_beyond(&self, p: [f32; 3], f: f32) -> f32 {
+        if self.cut.open {
+            return 0.0_f32.copysign(f);
+        }
+        let [min, max] = self.around;
+        let way = |k: usize| (min[k] - p[k]).max(p[k] - max[k]).max(0.0);
+        let away = (way(0) * way(0) + way(1) * way(1) + way(2) * way(2)).sqrt();
+        // a hair less, for the roundings of the box; also where the value is no number
+        (away * 0.9999).min(f.abs()).copysign(f)
     }
 
     fn tape<'a>(&'a self, code: &'a Code) -> Tape<'a> {

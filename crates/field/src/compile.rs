@@ -106,6 +106,7 @@ pub(crate) fn compile_any(
         exactness: facts.exactness,
         steep: l.steep,
         slope: l.slope,
+        unbounded: facts.unbounded,
     })
 }
 

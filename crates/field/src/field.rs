@@ -112,6 +112,9 @@ pub struct Facts {
     pub exactness: Exactness,
     /// Lipschitz constant of the value before any division.
     pub slope: f64,
+    /// Whether no slope is known to hold: the one here is a usual one near the surface of a formula that has none. Sphere tracing must not rest
+    /// on values then; cells and ranges know more.
+    pub unbounded: bool,
     /// Whether the value may need a division: decided by the kind of node and not by its numbers alone, so that a slider
     /// does not change a program's structure.
     pub steep: bool,
@@ -200,6 +203,7 @@ impl Field {
             bounds: (entry.bounds)(&params),
             exactness: entry.exactness,
             slope,
+            unbounded: false,
             steep: slope != 1.0 || (entry.lipschitz)(&entry.info.defaults()) != 1.0,
             dimension: entry.info.dimension,
             depth: 1,
@@ -335,6 +339,7 @@ impl Field {
                 bounds,
                 exactness: (entry.exactness)(facts.exactness, f.exactness),
                 slope,
+                unbounded: facts.unbounded || f.unbounded,
                 steep: !entry.sharp
                     && (facts.steep
                         || f.steep
@@ -490,6 +495,7 @@ impl Field {
             bounds,
             exactness,
             slope: formula.slope(),
+            unbounded: formula.is_unbounded(),
             steep: true,
             dimension,
             depth: 1,
@@ -499,6 +505,7 @@ impl Field {
         for inner in formula.fields() {
             let child = inner.field().facts();
             facts.exactness = facts.exactness.max(child.exactness);
+            facts.unbounded |= child.unbounded;
             facts.depth = facts.depth.max(child.depth.saturating_add(1));
             facts.nodes = facts.nodes.saturating_add(child.nodes);
             facts.materials = facts.materials.max(child.materials);
@@ -520,6 +527,7 @@ impl Field {
             bounds,
             exactness: Exactness::Bound,
             slope: sampled.slope(),
+            unbounded: false,
             steep: true,
             dimension: sampled.dimension(),
             depth: 1,

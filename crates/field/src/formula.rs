@@ -260,13 +260,25 @@ impl FormulaStep {
     }
 }
 
+/// What the slope of a formula rests on.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ground {
+    /// A proof.
+    Proven,
+    /// Somebody's word.
+    Stated,
+    /// Nothing: no slope holds everywhere, or none was found, for this reason. The slope is a usual one near the surface, and no step may
+    /// rest on it.
+    Usual(ProofError),
+}
+
 /// A formula with its box and its slope.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Formula {
     steps: Steps,
     bounds: Aabb,
     slope: f64,
-    proven: bool,
+    ground: Ground,
     steepest: f64,
     steepest_at: [f64; 3],
     cut: Option<[f64; 3]>,
@@ -294,11 +306,30 @@ impl Formula {
             steps,
             bounds,
             slope: proof.slope.max(FLATTEST),
-            proven: true,
+            ground: Ground::Proven,
             steepest: proof.steepest,
             steepest_at: proof.steepest_at,
             cut,
             flat: false,
+        })
+    }
+
+    /// Any formula: as [`Formula::prove`] where there is a proof, else with a slope that is a usual one near its surface, so that its value is
+    /// about a distance there. Whoever looks for the surface of such a formula has to do so by its ranges: see
+    /// [`Facts::unbounded`](crate::field::Facts::unbounded).
+    ///
+    /// # Errors
+    /// A box that is empty, endless or larger than 1e6; a power or a logarithm of a number that can be negative in the box.
+    pub fn new(steps: Steps, bounds: Aabb, budget: &Budget) -> Result<Formula, ProofError> {
+        let reason = match Formula::prove(steps.clone(), bounds, budget) {
+            Err(reason @ (ProofError::Unbounded(_) | ProofError::Steep { .. })) => reason,
+            other => return other,
+        };
+        let slope = proof::usual(&ProofTape::new(&steps), &bounds);
+        let formula = Formula::stated(steps, bounds, slope.clamp(FLATTEST, STEEPEST))?;
+        Ok(Formula {
+            ground: Ground::Usual(reason),
+            ..formula
         })
     }
 
@@ -322,7 +353,7 @@ impl Formula {
             steps,
             bounds,
             slope: slope.max(FLATTEST),
-            proven: false,
+            ground: Ground::Stated,
             steepest,
             steepest_at,
             cut,
@@ -379,14 +410,24 @@ impl Formula {
         self.bounds
     }
 
-    /// Lipschitz constant inside the box; no less than 1.
+    /// Lipschitz constant inside the box, if it has a [`Ground`]; no less than 1.
     pub fn slope(&self) -> f64 {
         self.slope
     }
 
+    /// What the slope rests on.
+    pub fn ground(&self) -> &Ground {
+        &self.ground
+    }
+
     /// Whether the slope was proven, rather than stated by hand.
     pub fn is_proven(&self) -> bool {
-        self.proven
+        self.ground == Ground::Proven
+    }
+
+    /// Whether no slope holds everywhere, or none was found.
+    pub fn is_unbounded(&self) -> bool {
+        matches!(self.ground, Ground::Usual(_))
     }
 
     /// The longest gradient that was found, a lower bound on the slope. A proven slope is never below it, and the closer

@@ -48,6 +48,7 @@ pub struct Program {
     pub(crate) exactness: Exactness,
     pub(crate) steep: bool,
     pub(crate) slope: f64,
+    pub(crate) unbounded: bool,
 }
 
 /// Slopes below this are none.
@@ -257,7 +258,12 @@ impl Program {
     /// Whether its value is near enough to the distance to be shown as one. What is shown of another is the value over the
     /// length of its gradient, which does not depend on the constant that it was divided by.
     pub fn is_close(&self) -> bool {
-        self.slope <= CLOSE
+        self.slope <= CLOSE && !self.unbounded
+    }
+
+    /// Whether its value may change by more than 1 a unit, by any amount: see [`Facts::unbounded`](crate::field::Facts::unbounded).
+    pub fn is_unbounded(&self) -> bool {
+        self.unbounded
     }
 
     /// How many evaluations a ray may take where it may take `steps` of a field whose value is the distance: one that is less

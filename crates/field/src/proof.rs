@@ -15,7 +15,7 @@ pub use obstacle::{Cause, Obstacle};
 
 pub(crate) use base::bases;
 use jet::Jet;
-pub(crate) use look::{cut, reach, sample};
+pub(crate) use look::{cut, reach, sample, usual};
 pub(crate) use search::slope;
 use tape::Cell;
 pub(crate) use tape::ProofTape;

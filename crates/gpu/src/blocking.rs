@@ -22,7 +22,7 @@ use zeroset_scene::accumulator::Accumulator;
 use zeroset_scene::camera::Camera;
 use zeroset_scene::motion::Moving;
 use zeroset_scene::render::{Observer, Prepared, RenderError, Renderer, Statistics};
-use zeroset_scene::scene::Scene;
+use zeroset_scene::scene::{Object, Scene};
 use zeroset_shader::{FieldForm, Job, Shaders};
 
 /// How long a driver may compile.
@@ -111,6 +111,11 @@ impl GpuRenderer {
     /// # Errors
     /// See [`RenderError`].
     pub fn job(&self, scene: &Scene) -> Result<Job, RenderError> {
+        let is_unbounded = |o: &&Object| o.field.facts().unbounded;
+        if let Some(object) = scene.objects().iter().find(is_unbounded) {
+            let object = object.name.clone();
+            return Err(GpuError::Unbounded { object }.into());
+        }
         self.core().shaders.prepare(scene)
     }
 

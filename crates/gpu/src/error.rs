@@ -120,6 +120,14 @@ pub enum GpuError {
         /// The adapter.
         adapter: String,
     },
+    /// A formula of the scene has no Lipschitz constant, and shaders step by nothing else.
+    #[error(
+        "a formula of `{object}` has no Lipschitz constant: its surface is looked for by ranges, which only the CPU does"
+    )]
+    Unbounded {
+        /// The object.
+        object: String,
+    },
     /// The scene has no shader, or its rendering was cancelled.
     #[error(transparent)]
     Scene(RenderError),
@@ -151,6 +159,9 @@ impl GpuError {
             }
             GpuError::Loops { .. } => Some(
                 "render on the CPU, or with fewer steps, fewer rays of occlusion or shorter lists of points",
+            ),
+            GpuError::Unbounded { .. } => Some(
+                "render on the CPU, or state how fast the formula changes at most: `slope = ...`",
             ),
             GpuError::Scene(_) => None,
             _ => Some("update the driver, or render on the CPU"),

@@ -10,7 +10,9 @@
 
 use crate::marcher::{self, Marcher, RayState, Reach};
 use crate::ray::{Common, Queue, WideRay};
-use crate::simd::{Chosen, INSIDE, along, first_lanes, load, load_words, load3, sided, store3};
+use crate::simd::{
+    Chosen, INSIDE, along, first_lanes, load, load_words, load3, sided, store_words, store3,
+};
 use crate::tile::{Rays, Solid};
 use fearless_simd::{Simd, prelude::*};
 use std::ops::Range;
@@ -239,6 +241,19 @@ fn advance<S: Simd, M: Marcher, K: Sink<S>>(
         let word =
             word | unknown.select(value.0.bitcast::<S::u32s>() & INSIDE, S::u32s::splat(s, 0));
         let first = LaneMask(first);
+        let live = if how.solid.sought && !how.touch {
+            // where nothing says how far a ray may go, its surface is looked for in another way
+            let stuck = live & value.abs().below(f32::MIN_POSITIVE);
+            store_words::<S>(word, &mut rays.word, i);
+            let mut bits = stuck.0.to_bitmask();
+            while bits != 0 {
+                sink.spent(rays, common, i + bits.trailing_zeros() as usize);
+                bits &= bits - 1;
+            }
+            live & !stuck
+        } else {
+            live
+        };
         let f = sided(value, word);
         let to = at.t + at.z.abs();
         let ray = rays.ray.load(s, common, i);

@@ -130,7 +130,7 @@ fn refine<S: Simd>(s: S, solid: &Solid<'_>, k: usize, n: usize, q: &mut Scratch)
                 },
             );
             // as the rays were marched
-            solid.clearances(s, &mut q.work, n);
+            solid.sides(s, &mut q.work, n);
         }
         q.counts.march += n as u64;
         count = 0;
@@ -217,7 +217,7 @@ fn refine_rest<S: Simd>(
                 column.0[j] = x;
             }
         }
-        solid.clearances(s, &mut q.work, count);
+        solid.sides(s, &mut q.work, count);
         q.counts.march += count as u64;
         let mut kept = 0;
         for j in 0..count {
@@ -284,6 +284,38 @@ pub(crate) fn distances<S: Simd>(s: S, solid: &Solid<'_>, n: usize, work: &mut W
         let slope = load3(s, work.gradients(), i).length();
         let distance = f / slope.max(FLAT);
         store(distance, &mut work.values_mut().0, i);
+    }
+}
+
+/// As [`distances`], and how far rays may go in place of the values beside the gradients: these, or what cells know where no slope holds.
+#[inline(always)]
+pub(crate) fn distances_and_clearances<S: Simd>(
+    s: S,
+    solid: &Solid<'_>,
+    n: usize,
+    work: &mut Workspace,
+) {
+    if !solid.sought {
+        distances(s, solid, n, work);
+        return;
+    }
+    solid.gradients(s, work, n);
+    let values = *work.gradient_values();
+    *work.values_mut() = values;
+    solid.widen(work, n);
+    for i in (0..n).step_by(S::f32s::LEN) {
+        let (free, f) = (load(s, &work.values().0, i), load(s, &values.0, i));
+        // nothing is known there but the side that it is on
+        let unknown = free.abs().below(f32::MIN_POSITIVE);
+        let behind = f.below(0.0);
+        let side = Lanes::select(behind, f, f * 0.0);
+        let slope = load3(s, work.gradients(), i).length();
+        store(
+            Lanes::select(unknown, side, free),
+            &mut work.gradients_mut()[0].0,
+            i,
+        );
+        store(f / slope.max(FLAT), &mut work.values_mut().0, i);
     }
 }
 

@@ -560,9 +560,10 @@ struct Compiled {
 
 /// The cells of a scene's program, where it is steep: others do not pay yet, see [`PreparedScene::with_cells`].
 fn cells_of(scene: &Scene, program: &Program) -> Option<Arc<Cells>> {
-    Cells::new(program, around(scene))
-        .filter(Cells::has_slopes)
-        .map(Arc::new)
+    let cells = Cells::new(program, around(scene)).filter(Cells::has_slopes)?;
+    let facts = scene.objects().iter().map(|o| o.field.facts());
+    let is_open = { facts }.any(|f| f.unbounded && !f.bounds.is_finite());
+    Some(Arc::new(if is_open { cells.open() } else { cells }))
 }
 
 /// A box around all objects that have an end.

@@ -2,7 +2,7 @@
 //! where they begin. See [`zeroset_shade::secondary`].
 
 use crate::march::{ITERATIONS, ORDINAL, ORDINAL_BITS, age};
-use crate::normal::distances;
+use crate::normal::distances_and_clearances;
 use crate::ray::Queue;
 use crate::shadow::Hard;
 use crate::simd::{
@@ -346,7 +346,7 @@ fn sample<S: Simd>(s: S, common: Option<[f32; 3]>, solid: &Solid<'_>, q: &mut Ra
     if solid.close {
         solid.values(s, q.work, rays.count);
     } else {
-        distances(s, solid, rays.count, q.work);
+        distances_and_clearances(s, solid, rays.count, q.work);
     }
 }
 

@@ -74,6 +74,8 @@ pub(crate) struct Solid<'a> {
     pub(crate) view: &'a View,
     /// Evaluations that a ray may take.
     pub(crate) max_steps: u32,
+    /// Whether the surface has to be sought by ranges wherever it is not known how far a ray may go: there [`Solid::clearances`] are 0.
+    pub(crate) sought: bool,
     /// Whether the field is an estimate of something without an end to its detail: what is under the footprint is a hit.
     pub(crate) fractal: bool,
     /// Whether the field's value can be shown as a distance.
@@ -110,6 +112,7 @@ impl<'a> Solid<'a> {
                 _ => program.patient(max_steps),
             }
             .min(ITERATIONS),
+            sought: program.is_unbounded() && !program.is_fractal(),
             fractal: program.is_fractal(),
             close: program.is_close(),
             skins,
@@ -132,12 +135,35 @@ impl Solid<'_> {
     }
 
     /// How far around each point the field keeps its sign, and on which side of the surface it is: the values, where the field changes by no
-    /// more than 1 a unit, or more than that where cells know how steep it is.
+    /// more than 1 a unit, or more than that where cells know how steep it is; 0 with that sign where a field without a Lipschitz constant says
+    /// nothing.
     #[inline(always)]
     pub(crate) fn clearances<S: Simd>(&self, s: S, work: &mut Workspace, n: usize) {
         self.values(s, work, n);
-        if let Some(cells) = self.cells {
-            cells.widen(work, n);
+        self.widen(work, n);
+    }
+
+    /// Makes clearances of the values in the workspace.
+    #[inline(always)]
+    pub(crate) fn widen(&self, work: &mut Workspace, n: usize) {
+        match self.cells {
+            Some(cells) => cells.widen(work, n),
+            None if self.sought => {
+                let values = &mut work.values_mut().0[..n];
+                values.iter_mut().for_each(|f| *f = 0.0_f32.copysign(*f));
+            }
+            None => {}
+        }
+    }
+
+    /// Values that tell on which side of the surface points are, and about how far from it compared with each other: [`Solid::clearances`],
+    /// where those say something everywhere.
+    #[inline(always)]
+    pub(crate) fn sides<S: Simd>(&self, s: S, work: &mut Workspace, n: usize) {
+        if self.sought {
+            self.values(s, work, n);
+        } else {
+            self.clearances(s, work, n);
         }
     }
 

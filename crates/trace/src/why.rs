@@ -63,6 +63,8 @@ pub struct Why {
     pub exactness: Exactness,
     /// Whether it is an estimate of a fractal.
     pub is_fractal: bool,
+    /// Whether it has no Lipschitz constant, so that its surface is looked for by ranges. Steps are then guesses.
+    pub is_unbounded: bool,
 }
 
 impl PreparedScene {
@@ -87,6 +89,7 @@ impl PreparedScene {
         let leave = self.region.leave(origin, direction, 0.0, 0.0).min(view.far);
         let far = f64::from(if line.inside { view.far } else { leave });
         let near = |t: f64| f64::from(view.near(t as f32, narrow));
+        let is_unbounded = self.program.is_unbounded();
         let mut steps: Vec<Step> = Vec::new();
         let end = loop {
             if t > far {
@@ -105,7 +108,11 @@ impl PreparedScene {
             if value < near(t) * 1e-3 {
                 break End::Surface;
             }
-            t += value;
+            t += match is_unbounded {
+                // values are no bounds: a line along the gradient is all there is
+                true => (value / isolation.slope(&line, t).max(1.0)).max(near(t) * 0.1),
+                false => value,
+            };
         };
         self.mark(&line, &mut steps);
         let along = Ray {
@@ -140,6 +147,7 @@ impl PreparedScene {
             divided: self.program.slope(),
             exactness: self.program.exactness(),
             is_fractal: self.program.is_fractal(),
+            is_unbounded,
         }
     }
 

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use zeroset_catalogue::bounds::Aabb;
 use zeroset_eval::Point;
 use zeroset_field::field::{Field, Node};
-use zeroset_field::formula::Formula;
+use zeroset_field::formula::{Formula, Ground};
 use zeroset_field::program::{Limits, Program};
 use zeroset_number::{Dual, F64, Vec3, v3};
 use zeroset_scene::camera::Camera;
@@ -49,7 +49,7 @@ pub(crate) fn inside_words(name: &str) -> String {
 pub(crate) fn looseness(field: &Field) -> Option<f64> {
     let bounds = field.facts().bounds;
     let program = Program::compile(field, &Limits::default()).ok()?;
-    if program.is_close() || program.is_fractal() || !bounds.is_finite() {
+    if program.is_close() || program.is_fractal() || program.is_unbounded() || !bounds.is_finite() {
         return None;
     }
     let (mut values, mut gradients) = (
@@ -110,7 +110,7 @@ pub(crate) fn exceeded(field: &Field) -> Option<Exceeded> {
         let Node::Formula(formula) = field.node() else {
             continue;
         };
-        if formula.is_proven() {
+        if *formula.ground() != Ground::Stated {
             continue;
         }
         let (found, at) = steepest(formula);

@@ -39,6 +39,38 @@ pub(crate) fn sample(tape: &ProofTape, bounds: &Aabb) -> (f64, [f64; 3]) {
     steepest
 }
 
+/// How long the gradient is near the surface: the median over places of the box next to which the surface lies, as far as a line along the
+/// gradient tells, or over all places where there are none.
+pub(crate) fn usual(tape: &ProofTape, bounds: &Aabb) -> f64 {
+    const LOOKS: f64 = 4e5;
+    let side = ((LOOKS / tape.steps().len() as f64).cbrt() as usize).clamp(4, 24);
+    let last = tape.steps().len() - 1;
+    // half of what is between two places, along the axes that count
+    let cell = (0..3).filter(|&k| tape.reaches(last, k));
+    let cell = cell.map(|k| (bounds.max[k] - bounds.min[k]) / side as f64);
+    let near = 0.5 * cell.map(|c| c * c).sum::<f64>().sqrt();
+    let (mut duals, mut beside, mut all) = (Vec::new(), Vec::new(), Vec::new());
+    for i in 0..side * side * side {
+        let index = [i % side, i / side % side, i / side / side];
+        let [x, y, z] = std::array::from_fn(|k| {
+            let t = (index[k] as f64 + 0.43) / side as f64;
+            bounds.min[k] + t * (bounds.max[k] - bounds.min[k])
+        });
+        let Dual { v, d } = tape.eval(Dual::point(v3(F64(x), F64(y), F64(z))), &mut duals);
+        let length = d.iter().map(|d| d.0 * d.0).sum::<f64>().sqrt();
+        if !(v.0.is_finite() && length.is_finite() && length > 0.0) {
+            continue;
+        }
+        all.push(length);
+        if v.0.abs() < length * near {
+            beside.push(length);
+        }
+    }
+    let mut lengths = if beside.is_empty() { all } else { beside };
+    lengths.sort_by(f64::total_cmp);
+    lengths.get(lengths.len() / 2).copied().unwrap_or(1.0)
+}
+
 /// A point of the box's side where the formula is below zero by more than a hair, if there is one that can be found: the
 /// lowest part of the side is cut until it is known to be above.
 pub(crate) fn cut(
@@ -130,7 +162,13 @@ pub(crate) fn reach(tape: &ProofTape, bounds: &Aabb) -> Aabb {
             .map(|k| 0.25 * cell.side(k) * cell.side(k))
             .sum::<f64>()
             .sqrt();
-        let lowest = jet.value().lo.max(middle - way * jet.slope.l);
+        // where the value jumps only its range counts
+        let change = if jet.turned {
+            f64::INFINITY
+        } else {
+            way * jet.slope.l
+        };
+        let lowest = jet.value().lo.max(middle - change);
         if lowest > 0.0 {
             continue;
         }

@@ -83,12 +83,14 @@ pub(super) fn write(formula: &Formula) -> Map<String, Value> {
     if plane {
         body.insert("plane".into(), json!(true));
     }
-    body.insert("slope".into(), json!(formula.slope()));
+    if !formula.is_unbounded() {
+        body.insert("slope".into(), json!(formula.slope()));
+    }
     body.insert("proven".into(), json!(formula.is_proven()));
     body
 }
 
-/// A formula from its steps, its box, and its slope if that is stated rather than proven.
+/// A formula from its steps, its box, and its slope if that is stated rather than looked for.
 pub(super) fn read(body: &Map<String, Value>, fields: &[Field]) -> Read<Formula> {
     let steps = body.get("steps").and_then(Value::as_array);
     let steps = steps.ok_or_else(|| problem("a formula needs `steps`, a list"))?;
@@ -129,7 +131,7 @@ pub(super) fn read(body: &Map<String, Value>, fields: &[Field]) -> Read<Formula>
         body.get("slope").and_then(Value::as_f64),
     ) {
         (Some(false), Some(slope)) => Formula::stated(steps, bounds, slope),
-        _ => Formula::prove(steps, bounds, &Budget::default()),
+        _ => Formula::new(steps, bounds, &Budget::default()),
     };
     let formula = match plane {
         true => formula.and_then(Formula::flattened),

@@ -13,8 +13,8 @@ use zeroset_catalogue::bounds::Aabb;
 use zeroset_catalogue::{Dimension, LARGE, SMALL};
 use zeroset_field::field::Field;
 use zeroset_field::formula::{
-    Budget, BuildError, Builder, EASE, Expression, Formula, Function, ProofError, ROTATE, Steps,
-    WHERE, functions,
+    Budget, BuildError, Builder, EASE, Expression, Formula, Function, ROTATE, Steps, WHERE,
+    functions,
 };
 
 const SIZE: Slot = slot(
@@ -173,7 +173,7 @@ pub(crate) fn incomparable() -> Box<Mistake> {
     )
 }
 
-/// A formula over its box, proven or with a stated slope.
+/// A formula over its box, with a stated slope or whatever is found out about it.
 pub(crate) fn made(
     c: &mut Call<'_, '_>,
     f: Given,
@@ -188,22 +188,13 @@ pub(crate) fn made(
     c.machine.charge(PROOF + steps.list().len() as u64)?;
     let formula = match slope {
         Some(slope) => Formula::stated(steps, bounds, slope),
-        None => Formula::prove(steps, bounds, &Budget::default()),
+        None => Formula::new(steps, bounds, &Budget::default()),
     };
     let formula = match flat {
         true => formula.and_then(Formula::flattened),
         false => formula,
     };
-    let name = c.name;
-    let formula = formula.map_err(|e| {
-        let m = mistake(e.to_string()).at(f.place);
-        match e {
-            ProofError::Negative(_) => m,
-            _ => m.help(format!(
-                "state how fast it changes at most: {name}(..., slope = 2)"
-            )),
-        }
-    })?;
+    let formula = formula.map_err(|e| mistake(e.to_string()).at(f.place))?;
     c.machine.grow(size_of_val(formula.steps()))?;
     super::fields::value(c.machine, Field::formula(Arc::new(formula)))
 }

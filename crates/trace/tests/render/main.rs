@@ -2,6 +2,7 @@
 
 #![allow(unreachable_pub, reason = "the modules of a test are its own")]
 
+mod any_formula;
 mod cells;
 mod certify;
 mod closed;

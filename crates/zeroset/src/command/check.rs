@@ -12,6 +12,7 @@ use std::collections::{BTreeSet, HashSet};
 use std::fmt::Write;
 use zeroset_catalogue::bounds::{Aabb, Exactness};
 use zeroset_field::field::{Field, Node};
+use zeroset_field::formula::Ground;
 use zeroset_field::program::{Limits, Program};
 use zeroset_language::load::{Control, Loaded, Setting};
 use zeroset_output::display;
@@ -65,6 +66,8 @@ struct ObjectFinding {
     nodes: u64,
     /// What its distance rests on without a proof.
     unproven: Vec<String>,
+    /// Why formulas of it have no Lipschitz constant, so that their surfaces are looked for by ranges.
+    sought: Vec<String>,
     /// Where a slope that was stated by hand is exceeded.
     exceeded: Option<ExceededFinding>,
     /// How many times less than the distance the marched value is near its surface, where that is not about one.
@@ -121,6 +124,7 @@ fn findings(loaded: &Loaded, program: Option<&Program>, cost: Cost) -> Findings 
                 bounds: corners(&facts.bounds),
                 nodes: facts.nodes,
                 unproven: unproven(&object.field),
+                sought: sought(&object.field),
                 exceeded: survey::exceeded(&object.field).map(|e| ExceededFinding {
                     stated: e.stated,
                     found: e.found,
@@ -154,7 +158,9 @@ fn findings(loaded: &Loaded, program: Option<&Program>, cost: Cost) -> Findings 
         lights: scene.lights().len(),
         materials: scene.materials().len(),
         parameters: parameters.collect(),
-        proven: objects.iter().all(|o| o.unproven.is_empty()),
+        proven: objects
+            .iter()
+            .all(|o| o.unproven.is_empty() && o.sought.is_empty()),
         objects,
         coarse: survey::coarse(scene),
         inside: survey::around_camera(scene).map(str::to_owned),
@@ -191,7 +197,7 @@ fn unproven(field: &Field) -> Vec<String> {
             Node::Primitive { entry, .. } => {
                 found.insert(format!("{}: a distance estimator", entry.info.name))
             }
-            Node::Formula(formula) if !formula.is_proven() => {
+            Node::Formula(formula) if *formula.ground() == Ground::Stated => {
                 found.insert("a formula whose slope is stated by hand".to_owned())
             }
             // what is above an estimate is one too; an operation that makes an estimate of a proven field is named
@@ -206,6 +212,23 @@ fn unproven(field: &Field) -> Vec<String> {
             }
             _ => false,
         };
+    }
+    found.into_iter().collect()
+}
+
+/// Why formulas in a tree have no Lipschitz constant, each reason once.
+fn sought(field: &Field) -> Vec<String> {
+    let (mut seen, mut found, mut open) = (HashSet::new(), BTreeSet::new(), vec![field]);
+    while let Some(field) = open.pop() {
+        if !field.facts().unbounded || !seen.insert(field.key()) {
+            continue;
+        }
+        open.extend(field.children());
+        if let Node::Formula(formula) = field.node()
+            && let Ground::Usual(reason) = formula.ground()
+        {
+            found.insert(reason.to_string());
+        }
     }
     found.into_iter().collect()
 }
@@ -276,6 +299,14 @@ fn words(findings: &Findings) -> String {
         );
     }
     for o in &findings.objects {
+        for reason in &o.sought {
+            let _ = writeln!(
+                out,
+                "By ranges: no slope holds for all of {}, so that rays look for its surface by ranges of its values, on the CPU, which is as \
+                 sure and takes longer. What stands in the way: {reason}.",
+                name(&o.name),
+            );
+        }
         if let Some(e) = &o.exceeded {
             let _ = writeln!(
                 out,

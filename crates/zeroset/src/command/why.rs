@@ -125,6 +125,9 @@ fn advice(scene: &Scene, why: &Why) -> String {
     if why.is_fractal {
         return "A fractal's distance is an estimate: what is shown is never proven. A smaller --march step share, or a larger picture, shows more of it.".into();
     }
+    if why.is_unbounded && matches!(why.verdict, Verdict::Hit | Verdict::Miss) {
+        return "No slope holds for all of the formula (`zeroset check` says why): the steps above are guesses, the picture looks for the surface by ranges.".into();
+    }
     if why.verdict == Verdict::Wrong {
         return match why.exactness {
             Exactness::Estimate => "The ray meets a surface that the picture does not show: a stated slope is too low there (`zeroset check` says where and how much).".into(),
