@@ -1,7 +1,7 @@
 //! From the tree to the list: lowering, sharing, registers.
 
 use crate::field::{Field, Node, Paint};
-use crate::formula::{Binary, Formula, FormulaStep};
+use crate::formula::{Binary, Formula, FormulaStep, Guide};
 use crate::placement::Placement;
 use crate::program::{Coat, CompileError, Limits, Program, Structure};
 use crate::repetition::{Polar, Repetition};
@@ -18,6 +18,9 @@ use zeroset_number::{Data, Grid};
 
 /// Sides of a box that has none, as parameters: squares of it still fit single precision.
 const FAR: f64 = 1e18;
+
+/// How many times larger a guide may make a value that is too small.
+const RAISED: f64 = 8.0;
 
 /// A step before registers are assigned: operands are the numbers of earlier steps.
 #[derive(Clone, Copy)]
@@ -54,6 +57,8 @@ struct Lowering<'l> {
     steep: bool,
     /// The largest slope that a value is divided by.
     slope: f64,
+    /// Whether guides make values of formulas about as large as distances.
+    guided: bool,
 }
 
 pub(crate) fn compile(
@@ -73,6 +78,25 @@ pub(crate) fn compile_any(
     limits: &Limits,
     spatial: &[bool],
 ) -> Result<Program, CompileError> {
+    let program = lowered(field, limits, spatial, true)?;
+    if !program.unbounded {
+        return Ok(program);
+    }
+    let bare = lowered(field, limits, spatial, false)?;
+    let is_guided = bare.structure != program.structure;
+    Ok(Program {
+        bare: is_guided.then(|| Arc::new(bare)),
+        ..program
+    })
+}
+
+/// Compiles a field, with or without [guides](Guide).
+fn lowered(
+    field: &Field,
+    limits: &Limits,
+    spatial: &[bool],
+    guided: bool,
+) -> Result<Program, CompileError> {
     let facts = field.facts();
     let mut l = Lowering {
         steps: Vec::new(),
@@ -85,6 +109,7 @@ pub(crate) fn compile_any(
         coats: Vec::new(),
         steep: false,
         slope: 1.0,
+        guided,
     };
     let value = l.field(field, INPUT)?;
     let result = l.unit(field, value)?;
@@ -107,6 +132,7 @@ pub(crate) fn compile_any(
         steep: l.steep,
         slope: l.slope,
         unbounded: facts.unbounded,
+        bare: None,
     })
 }
 
@@ -296,7 +322,10 @@ impl Lowering<'_> {
             return Ok(value);
         }
         self.steep = true;
-        self.slope = self.slope.max(facts.slope);
+        // that of what has none says how values are scaled, and nothing of how far they are from distances
+        if !facts.unbounded {
+            self.slope = self.slope.max(facts.slope);
+        }
         // a hair less, for the rounding to single precision
         let scale = if facts.slope > 0.0 {
             (1.0 - 1e-6) / facts.slope
@@ -474,12 +503,46 @@ impl Lowering<'_> {
             .last()
             .copied()
             .expect("Formula refuses formulas of nothing");
-        self.change(
+        let value = self.change(
             code::CONTINUE,
             value,
             point,
             &[&sides[..], &[formula.slope()]].concat(),
-        )
+        )?;
+        match formula.guide().filter(|_| self.guided) {
+            Some(guide) => self.guided(guide, formula.slope(), value, point),
+            None => Ok(value),
+        }
+    }
+
+    /// A value whose sign is right, made about as large as the distance: no larger than what a guide and its slack leave open, and no smaller as
+    /// long as that is not [`RAISED`] times as much. Its sign stays, whatever the guide says; so does its zero set.
+    fn guided(
+        &mut self,
+        guide: &Guide,
+        slope: f64,
+        value: u32,
+        point: u32,
+    ) -> Result<u32, CompileError> {
+        let [min, max] = [Binary::Min, Binary::Max].map(code::binary);
+        let distance = self.grid_of(&guide.distances, point, 1.0)?;
+        let distance = self.change(code::SCALE, distance, INPUT, &[slope])?;
+        let slack = self.leaf(code::CONSTANT, point, &[slope * guide.slack])?;
+        let below = self.leaf(code::CONSTANT, point, &[-slope * guide.slack])?;
+        let low = self.pair(code::binary(Binary::Add), distance, below, &[])?;
+        let high = self.pair(code::binary(Binary::Add), distance, slack, &[])?;
+        // raised where it is small far away, on either side
+        let raised = self.change(code::SCALE, value, INPUT, &[RAISED])?;
+        let raised = self.pair(min, low, raised, &[])?;
+        let value = self.pair(max, value, raised, &[])?;
+        let raised = self.change(code::SCALE, value, INPUT, &[RAISED])?;
+        let raised = self.pair(max, high, raised, &[])?;
+        let value = self.pair(min, value, raised, &[])?;
+        // and no larger than it can be
+        let low = self.pair(min, low, below, &[])?;
+        let high = self.pair(max, high, slack, &[])?;
+        let value = self.pair(max, value, low, &[])?;
+        self.pair(min, value, high, &[])
     }
 
     /// The point that three steps of a formula are; `inside` is where the formula is evaluated.
@@ -507,6 +570,11 @@ impl Lowering<'_> {
     }
 
     fn sampled(&mut self, sampled: &Sampled, point: u32) -> Result<u32, CompileError> {
+        self.grid_of(sampled, point, sampled.slope())
+    }
+
+    /// Samples, continued beyond their box with a slope.
+    fn grid_of(&mut self, sampled: &Sampled, point: u32, slope: f64) -> Result<u32, CompileError> {
         let (sides, grid) = (sides(&sampled.bounds()), sampled.grid());
         let number = match self.grids.iter().position(|g| Arc::ptr_eq(g, grid)) {
             Some(number) => number,
@@ -520,8 +588,12 @@ impl Lowering<'_> {
         let params = [&place[..], &[number as f64], &nodes].concat();
         let inside = self.warp(code::CLAMP, point, &sides)?;
         let value = self.leaf(code::SAMPLED, inside, &params)?;
-        let slope = [sampled.slope()];
-        self.change(code::CONTINUE, value, point, &[&sides[..], &slope].concat())
+        self.change(
+            code::CONTINUE,
+            value,
+            point,
+            &[&sides[..], &[slope]].concat(),
+        )
     }
 }
 

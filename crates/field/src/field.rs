@@ -485,6 +485,12 @@ impl Field {
         if dimension == Dimension::Two {
             // a plane shape has no ends along z
             (bounds.min[2], bounds.max[2]) = (f64::NEG_INFINITY, f64::INFINITY);
+        } else if formula.is_unbounded() {
+            // cells are made around it: the tighter the better
+            let reach = formula.reach();
+            if !reach.is_empty() {
+                bounds = reach;
+            }
         }
         let exactness = if formula.is_proven() {
             Exactness::Bound

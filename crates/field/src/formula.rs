@@ -21,6 +21,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub(crate) use guide::Guide;
+
 use crate::proof::{self, ProofTape};
 use std::sync::Arc;
 use zeroset_catalogue::Dimension;
@@ -32,6 +34,7 @@ use zeroset_number::Vec3;
 mod builder;
 mod ease;
 mod function;
+mod guide;
 mod inner;
 pub(crate) mod print;
 
@@ -282,6 +285,7 @@ pub struct Formula {
     steepest: f64,
     steepest_at: [f64; 3],
     cut: Option<[f64; 3]>,
+    guide: Option<Guide>,
     flat: bool,
 }
 
@@ -310,6 +314,7 @@ impl Formula {
             steepest: proof.steepest,
             steepest_at: proof.steepest_at,
             cut,
+            guide: None,
             flat: false,
         })
     }
@@ -325,10 +330,11 @@ impl Formula {
             Err(reason @ (ProofError::Unbounded(_) | ProofError::Steep { .. })) => reason,
             other => return other,
         };
-        let slope = proof::usual(&ProofTape::new(&steps), &bounds);
+        let slope = proof::usual(&ProofTape::new(&steps), &steps.reach(&bounds));
         let formula = Formula::stated(steps, bounds, slope.clamp(FLATTEST, STEEPEST))?;
         Ok(Formula {
             ground: Ground::Usual(reason),
+            guide: Guide::of(&formula.steps, &formula.bounds, &formula.reach()),
             ..formula
         })
     }
@@ -357,6 +363,7 @@ impl Formula {
             steepest,
             steepest_at,
             cut,
+            guide: None,
             flat: false,
         })
     }
@@ -382,7 +389,14 @@ impl Formula {
         (self.bounds.min[2], self.bounds.max[2]) =
             (-zeroset_catalogue::LARGE, zeroset_catalogue::LARGE);
         self.flat = true;
+        // which is one of space
+        self.guide = None;
         Ok(self)
+    }
+
+    /// About how far the surface is, where values do not say it.
+    pub(crate) fn guide(&self) -> Option<&Guide> {
+        self.guide.as_ref()
     }
 
     /// The plane or space.

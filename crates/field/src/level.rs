@@ -60,6 +60,10 @@ fn level_bounds(field: &Field, level: f64, known: &Known) -> Aabb {
         }
         // copies are at least as far as their boxes
         Node::Repeat { .. } | Node::Polar { .. } => facts.bounds.grow(level),
+        Node::Formula(formula) if formula.is_unbounded() => formula
+            .bounds()
+            .hull(&facts.bounds)
+            .grow(level / facts.slope),
         Node::Formula(_) | Node::Sampled(_) => facts.bounds.grow(level / facts.slope),
         Node::Sided(shape) | Node::Paint { shape, .. } => below(shape, level),
     };

@@ -49,6 +49,8 @@ pub struct Program {
     pub(crate) steep: bool,
     pub(crate) slope: f64,
     pub(crate) unbounded: bool,
+    /// The same without guides, where there are any.
+    pub(crate) bare: Option<Arc<Program>>,
 }
 
 /// Slopes below this are none.
@@ -200,8 +202,10 @@ impl Program {
                 *x = side;
             }
         }
+        let bare = self.bare.as_ref().and_then(|bare| bare.sided(side));
         Some(Program {
             data: Arc::new(data),
+            bare: bare.map(Arc::new),
             ..self.clone()
         })
     }
@@ -220,6 +224,12 @@ impl Program {
             code: &self.structure.marks,
             data: &self.data,
         }
+    }
+
+    /// What rays are marched through: the same surface, in most programs by the same values. Where a formula has no Lipschitz constant, values are
+    /// made about as large as distances by what is known of the formula from a grid; here they are not, and their ranges and slopes are tighter.
+    pub fn marched(&self) -> &Program {
+        self.bare.as_deref().unwrap_or(self)
     }
 
     /// What is shown as the distance to the surface where the field has this value and gradient, and its gradient: the value
@@ -258,7 +268,7 @@ impl Program {
     /// Whether its value is near enough to the distance to be shown as one. What is shown of another is the value over the
     /// length of its gradient, which does not depend on the constant that it was divided by.
     pub fn is_close(&self) -> bool {
-        self.slope <= CLOSE && !self.unbounded
+        self.slope <= CLOSE
     }
 
     /// Whether its value may change by more than 1 a unit, by any amount: see [`Facts::unbounded`](crate::field::Facts::unbounded).

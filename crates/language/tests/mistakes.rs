@@ -156,7 +156,6 @@ fn formulas() {
                 "a vector as a condition",
                 "show(field(lambda p: 1 if p > 0 else 2))",
             ),
-            ("a jump", "show(field(lambda p: 1 if p.x > 0 else p.y))"),
             (
                 "a condition for a loop",
                 "show(field(lambda p: [c for c in p if c > 0][0]))",

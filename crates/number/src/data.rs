@@ -157,6 +157,27 @@ impl Grid {
         self.values[i + nodes[0] * (j + nodes[1] * k)]
     }
 
+    /// The samples at the eight corners of cells, x fastest, from the coordinates of their first nodes, one a lane. Scalar, and one function for
+    /// all vectors: gathering takes no arithmetic that would be faster in SIMD, and what is inlined everywhere takes long to compile.
+    #[inline(never)]
+    pub(super) fn corners<const N: usize>(&self, first: [&[f32]; 3], out: &mut [[f32; N]; 8]) {
+        let [nx, ny, nz] = self.nodes.map(|n| n as usize);
+        let [x, y, z] = first;
+        for (lane, ((x, y), z)) in x.iter().zip(y).zip(z).enumerate().take(N) {
+            // not a number is 0
+            let node = [*x as usize, *y as usize, *z as usize];
+            let i = node[0].min(nx - 2);
+            let j = node[1].min(ny - 2);
+            let k = node[2].min(nz - 2);
+            let near = &self.values[i + nx * (j + ny * k)..][..nx + 2];
+            let far = &self.values[i + nx * (j + ny * (k + 1))..][..nx + 2];
+            for (corner, from) in [0, 1, nx, nx + 1].into_iter().enumerate() {
+                out[corner][lane] = near[from];
+                out[4 + corner][lane] = far[from];
+            }
+        }
+    }
+
     fn steepest_along(&self, axis: usize) -> f32 {
         let mut steepest = 0.0_f32;
         let [nx, ny, nz] = self.nodes.map(|n| n as usize);

@@ -215,6 +215,7 @@ impl<const SINGLE: bool> IntervalOf<SINGLE> {
 
     /// The ends, outwards by a share of them and an absolute number. What single precision cannot hold is infinite there, or the largest
     /// number that it has.
+    #[inline(never)]
     fn widened(self, share: f64, by: f64) -> Self {
         let (lo, hi) = (down(self.lo), up(self.hi));
         let lo = down(lo - (lo.abs() * share + by));
@@ -243,6 +244,7 @@ impl<const SINGLE: bool> IntervalOf<SINGLE> {
     }
 
     /// The ends, rounded outwards by what a library function may be off by.
+    #[inline(never)]
     fn library(lo: f64, hi: f64) -> Self {
         let mut r = Self::new(lo, hi);
         if SINGLE {
@@ -279,6 +281,7 @@ impl<const SINGLE: bool> Neg for IntervalOf<SINGLE> {
 
 impl<const SINGLE: bool> Add for IntervalOf<SINGLE> {
     type Output = Self;
+    #[inline(never)]
     fn add(self, o: Self) -> Self {
         // without rounding, so that what is zero stays so
         if o.is_zero() {
@@ -300,6 +303,7 @@ impl<const SINGLE: bool> Sub for IntervalOf<SINGLE> {
 
 impl<const SINGLE: bool> Mul for IntervalOf<SINGLE> {
     type Output = Self;
+    #[inline(never)]
     fn mul(self, o: Self) -> Self {
         if self.is_zero() || o.is_zero() {
             return Self::point(0.0);
@@ -316,6 +320,7 @@ impl<const SINGLE: bool> Mul for IntervalOf<SINGLE> {
 
 impl<const SINGLE: bool> Div for IntervalOf<SINGLE> {
     type Output = Self;
+    #[inline(never)]
     fn div(self, o: Self) -> Self {
         if o.lo > 0.0 || o.hi < 0.0 {
             self * Self::rounded(1.0 / o.hi, 1.0 / o.lo)
@@ -446,6 +451,7 @@ impl<const SINGLE: bool> Real for IntervalOf<SINGLE> {
     fn lit(self, c: f32) -> Self {
         c.into()
     }
+    #[inline(never)]
     fn select(m: Maybe, yes: Self, no: Self) -> Self {
         if m.undecided() {
             yes.hull(no)
@@ -456,10 +462,12 @@ impl<const SINGLE: bool> Real for IntervalOf<SINGLE> {
         }
     }
 
+    #[inline(never)]
     fn sqrt(self) -> Self {
         let r = Self::rounded(self.lo.max(0.0).sqrt(), self.hi.max(0.0).sqrt());
         r.clip(0.0, f64::INFINITY)
     }
+    #[inline(never)]
     fn abs(self) -> Self {
         if self.lo >= 0.0 {
             self
@@ -472,24 +480,30 @@ impl<const SINGLE: bool> Real for IntervalOf<SINGLE> {
             }
         }
     }
+    #[inline(never)]
     fn floor(self) -> Self {
         Self {
             lo: self.lo.floor(),
             hi: self.hi.floor(),
         }
     }
+    #[inline(never)]
     fn sin_cos(self) -> (Self, Self) {
         (wave(self, f64::sin, FRAC_PI_2), wave(self, f64::cos, 0.0))
     }
+    #[inline(never)]
     fn exp(self) -> Self {
         self.monotone(f64::exp).clip(0.0, f64::INFINITY)
     }
+    #[inline(never)]
     fn exp2(self) -> Self {
         self.monotone(f64::exp2).clip(0.0, f64::INFINITY)
     }
+    #[inline(never)]
     fn ln(self) -> Self {
         self.clip(0.0, f64::INFINITY).monotone(f64::ln)
     }
+    #[inline(never)]
     fn powf(self, k: Self) -> Self {
         let power = (self.ln() * k).exp();
         if SINGLE {
@@ -498,6 +512,7 @@ impl<const SINGLE: bool> Real for IntervalOf<SINGLE> {
             power
         }
     }
+    #[inline(never)]
     fn atan2(self, x: Self) -> Self {
         // the cut, where the angle jumps from pi to -pi, and the origin, where it may be any
         if x.lo <= 0.0 && self.contains(0.0) {
@@ -512,22 +527,28 @@ impl<const SINGLE: bool> Real for IntervalOf<SINGLE> {
         ];
         Self::library(smallest(ends), largest(ends))
     }
+    #[inline(never)]
     fn asin(self) -> Self {
         self.clip(-1.0, 1.0).monotone(f64::asin)
     }
+    #[inline(never)]
     fn acos(self) -> Self {
         self.clip(-1.0, 1.0).monotone(f64::acos)
     }
+    #[inline(never)]
     fn atan(self) -> Self {
         self.monotone(f64::atan)
     }
+    #[inline(never)]
     fn tanh(self) -> Self {
         self.monotone(f64::tanh).clip_rounded(-1.0, 1.0)
     }
+    #[inline(never)]
     fn sq(self) -> Self {
         let a = self.abs();
         Self::rounded(a.lo * a.lo, a.hi * a.hi).clip(0.0, f64::INFINITY)
     }
+    #[inline(never)]
     fn norm<const N: usize>(v: [Self; N]) -> Self {
         let [first, rest @ ..] = v.as_slice() else {
             return Self::point(0.0);
@@ -537,6 +558,7 @@ impl<const SINGLE: bool> Real for IntervalOf<SINGLE> {
     fn unit(self, norm: Self) -> Self {
         (self / norm.max(1e-18)).clip_rounded(-1.0, 1.0)
     }
+    #[inline(never)]
     fn sign(self) -> Self {
         let sign = |x: f64| if x < 0.0 { -1.0 } else { 1.0 };
         Self {
@@ -544,6 +566,7 @@ impl<const SINGLE: bool> Real for IntervalOf<SINGLE> {
             hi: sign(self.hi),
         }
     }
+    #[inline(never)]
     fn fract(self) -> Self {
         let f = self.floor();
         if f.lo < f.hi {
@@ -552,6 +575,7 @@ impl<const SINGLE: bool> Real for IntervalOf<SINGLE> {
             (self - f).clip(0.0, 1.0)
         }
     }
+    #[inline(never)]
     fn modulo<C: Copy>(self, c: C) -> Self
     where
         Self: Ops<C>,

@@ -6,7 +6,7 @@
 use super::data::Data;
 use super::elementary;
 use super::list::fold_list;
-use super::real::{Ends, Masked, Ops, Real, State, steps};
+use super::real::{Ends, Masked, Ops, Real, State, along_axis, between, steps};
 use super::vector::Vec3;
 use fearless_simd::{Simd, prelude::*};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
@@ -124,6 +124,12 @@ impl<S: Simd> State<Lanes<S>> for Lanes<S> {
     }
 }
 
+/// As many numbers as there are lanes.
+#[inline(always)]
+fn first_of<S: Simd>(s: S, numbers: &[f32; MOST_LANES]) -> Lanes<S> {
+    Lanes(S::f32s::from_slice(s, &numbers[..S::f32s::LEN]))
+}
+
 impl<S: Simd> Real for Lanes<S> {
     const SHOWN: bool = true;
     type Base = Self;
@@ -151,6 +157,31 @@ impl<S: Simd> Real for Lanes<S> {
             node.x.0.token(),
             &found[..S::f32s::LEN],
         ))
+    }
+    #[inline(always)]
+    fn sample(store: &Data, grid: f32, nodes: Vec3<f32>, p: Vec3<Self>) -> Self {
+        let (x, i) = along_axis(p.x, nodes.x);
+        let (y, j) = along_axis(p.y, nodes.y);
+        let (z, k) = along_axis(p.z, nodes.z);
+        let mut corners = [[f32::NAN; MOST_LANES]; 8];
+        if let Some(grid) = store.grids.get(grid as usize) {
+            grid.corners(
+                [i.0.as_slice(), j.0.as_slice(), k.0.as_slice()],
+                &mut corners,
+            );
+        }
+        let s = p.x.0.token();
+        let near = between(
+            between(first_of(s, &corners[0]), first_of(s, &corners[1]), x),
+            between(first_of(s, &corners[2]), first_of(s, &corners[3]), x),
+            y,
+        );
+        let far = between(
+            between(first_of(s, &corners[4]), first_of(s, &corners[5]), x),
+            between(first_of(s, &corners[6]), first_of(s, &corners[7]), x),
+            y,
+        );
+        between(near, far, z)
     }
     #[inline(always)]
     fn constant(c: f64) -> f32 {

@@ -129,7 +129,7 @@ pub(super) fn interpolate<R: Real>(
 
 /// Where a coordinate lies between the nodes of an axis, 0 to 1, and the first of the two.
 #[inline(always)]
-fn along_axis<R: Real>(c: R, nodes: R::Scalar) -> (R, R) {
+pub(super) fn along_axis<R: Real>(c: R, nodes: R::Scalar) -> (R, R) {
     let c = c.held(R::constant(0.0), nodes - 1.0);
     let first = Ops::<R::Scalar>::min(c.floor(), nodes - 2.0);
     (c - first, first)
@@ -150,7 +150,7 @@ fn edge<R: Real>(store: &R::Store, grid: R::Scalar, node: Vec3<R>, x: R) -> R {
 }
 
 #[inline(always)]
-fn between<R: Real>(a: R, b: R, t: R) -> R {
+pub(super) fn between<R: Real>(a: R, b: R, t: R) -> R {
     a + (b - a) * t
 }
 

@@ -85,6 +85,7 @@ impl Slope {
         v3(axis(p.x, 0), axis(p.y, 1), axis(p.z, 2))
     }
 
+    #[inline(never)]
     fn new(v: Interval, d: [Interval; 3], l: f64) -> Self {
         let l = if l.is_nan() { f64::INFINITY } else { l };
         Slope {
@@ -118,11 +119,13 @@ impl Slope {
     }
 
     /// The chain rule: `v` is the range of a function of self whose derivative is in `slope`.
+    #[inline(never)]
     fn chain(self, v: Interval, slope: Interval) -> Self {
         Slope::new(v, self.d.map(|x| x * slope), bound(self.l, slope.mag()))
     }
 
     /// One of two functions that agree where the condition flips.
+    #[inline(never)]
     fn pick(m: Maybe, v: Interval, yes: Self, no: Self) -> Self {
         if m.undecided() {
             let d = [0, 1, 2].map(|k| yes.d[k].hull(no.d[k]));
@@ -137,6 +140,7 @@ impl Slope {
 
 impl Neg for Slope {
     type Output = Self;
+    #[inline(never)]
     fn neg(self) -> Self {
         Slope {
             v: -self.v,
@@ -148,6 +152,7 @@ impl Neg for Slope {
 
 impl Add for Slope {
     type Output = Self;
+    #[inline(never)]
     fn add(self, o: Self) -> Self {
         let l = if self.l == 0.0 || o.l == 0.0 {
             self.l + o.l
@@ -167,6 +172,7 @@ impl Sub for Slope {
 
 impl Mul for Slope {
     type Output = Self;
+    #[inline(never)]
     fn mul(self, o: Self) -> Self {
         let sum = self.chain(self.v, o.v) + o.chain(o.v, self.v);
         Slope {

@@ -530,17 +530,24 @@ impl Texture {
         let scale = mapped_scale(rows).max(f32::MIN_POSITIVE);
         let step = here.width.max(self.finest.min(f32::MAX) * BUMP_STEP) / scale;
         let across = basis(at.normal);
-        let height = luminance_of(self.colour(here));
-        let rise = across.map(
-            #[inline(always)]
-            |direction| {
-                let beside = Place {
-                    point: here.point + times(rows, direction * step),
-                    ..*here
-                };
-                (luminance_of(self.colour(&beside)) - height) * depth / (step * scale)
-            },
-        );
+        // in a loop, so that all that colours take is compiled once
+        let zero = step.lit(0.0);
+        let beside = [
+            Vec3::splat(zero),
+            times(rows, across[0] * step),
+            times(rows, across[1] * step),
+        ];
+        let mut heights = [zero; 3];
+        for (height, by) in heights.iter_mut().zip(beside) {
+            let place = Place {
+                point: here.point + by,
+                ..*here
+            };
+            *height = luminance_of(self.colour(&place));
+        }
+        let [height, right, up] = heights;
+        let run = step * scale;
+        let rise = [(right - height) * depth / run, (up - height) * depth / run];
         bumped(at.normal, across, rise, d)
     }
 }

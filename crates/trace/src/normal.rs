@@ -287,36 +287,27 @@ pub(crate) fn distances<S: Simd>(s: S, solid: &Solid<'_>, n: usize, work: &mut W
     }
 }
 
-/// As [`distances`], and how far rays may go in place of the values beside the gradients: these, or what cells know where no slope holds.
+/// What is shown as the distance, into the values, and how far rays may go, into the values beside the gradients: for fields without a
+/// Lipschitz constant, whose values are about distances but no bounds.
 #[inline(always)]
-pub(crate) fn distances_and_clearances<S: Simd>(
+pub(crate) fn values_and_clearances<S: Simd>(
     s: S,
     solid: &Solid<'_>,
     n: usize,
     work: &mut Workspace,
 ) {
-    if !solid.sought {
-        distances(s, solid, n, work);
-        return;
-    }
-    solid.gradients(s, work, n);
-    let values = *work.gradient_values();
-    *work.values_mut() = values;
+    solid.sides(s, work, n);
+    let sides = *work.values();
     solid.widen(work, n);
-    for i in (0..n).step_by(S::f32s::LEN) {
-        let (free, f) = (load(s, &work.values().0, i), load(s, &values.0, i));
-        // nothing is known there but the side that it is on
-        let unknown = free.abs().below(f32::MIN_POSITIVE);
-        let behind = f.below(0.0);
-        let side = Lanes::select(behind, f, f * 0.0);
-        let slope = load3(s, work.gradients(), i).length();
-        store(
-            Lanes::select(unknown, side, free),
-            &mut work.gradients_mut()[0].0,
-            i,
-        );
-        store(f / slope.max(FLAT), &mut work.values_mut().0, i);
+    let mut free = *work.values();
+    for (free, side) in free.0.iter_mut().zip(sides.0).take(n) {
+        // where nothing is known but the side
+        if free.abs() < f32::MIN_POSITIVE {
+            *free = side.min(0.0);
+        }
     }
+    solid.values(s, work, n);
+    work.gradients_mut()[0] = free;
 }
 
 #[inline(always)]

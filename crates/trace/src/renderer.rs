@@ -362,7 +362,10 @@ impl PreparedScene {
     /// The scene with cells that make tapes shorter, where it has instructions enough for them: the same picture, to the bit. They are not
     /// there by default, because sorting points by cells takes as long as shorter tapes save (docs/performance.md, "Cells").
     pub fn with_cells(self) -> PreparedScene {
-        let cells = |program| Cells::new(program, around(&self.scene)).map(Arc::new);
+        let cells = |program: &Program| match program.is_unbounded() {
+            true => cells_of(&self.scene, program),
+            false => Cells::new(program, around(&self.scene)).map(Arc::new),
+        };
         let beside = self.beside.as_ref().map(|beside| {
             Arc::new(Beside {
                 closing: beside.closing.clone(),
@@ -560,7 +563,7 @@ struct Compiled {
 
 /// The cells of a scene's program, where it is steep: others do not pay yet, see [`PreparedScene::with_cells`].
 fn cells_of(scene: &Scene, program: &Program) -> Option<Arc<Cells>> {
-    let cells = Cells::new(program, around(scene)).filter(Cells::has_slopes)?;
+    let cells = Cells::new(program.marched(), around(scene)).filter(Cells::has_slopes)?;
     let facts = scene.objects().iter().map(|o| o.field.facts());
     let is_open = { facts }.any(|f| f.unbounded && !f.bounds.is_finite());
     Some(Arc::new(if is_open { cells.open() } else { cells }))

@@ -2,7 +2,7 @@
 //! where they begin. See [`zeroset_shade::secondary`].
 
 use crate::march::{ITERATIONS, ORDINAL, ORDINAL_BITS, age};
-use crate::normal::distances_and_clearances;
+use crate::normal::{distances, values_and_clearances};
 use crate::ray::Queue;
 use crate::shadow::Hard;
 use crate::simd::{
@@ -343,10 +343,12 @@ fn sample<S: Simd>(s: S, common: Option<[f32; 3]>, solid: &Solid<'_>, q: &mut Ra
         );
         store3(at, points, i);
     }
-    if solid.close {
+    if solid.sought {
+        values_and_clearances(s, solid, rays.count, q.work);
+    } else if solid.close {
         solid.values(s, q.work, rays.count);
     } else {
-        distances_and_clearances(s, solid, rays.count, q.work);
+        distances(s, solid, rays.count, q.work);
     }
 }
 
@@ -361,7 +363,7 @@ fn advance<S: Simd, P: Penumbra<S>>(
     let (close, skins) = (solid.close, solid.skins && !P::HARD);
     let (rays, ended) = (&mut *q.rays, &mut *q.ended);
     // how far rays may go, and what is shown as the distance
-    let (free, shown) = if close {
+    let (free, shown) = if close && !solid.sought {
         (q.work.values(), q.work.values())
     } else {
         (q.work.gradient_values(), q.work.values())

@@ -68,7 +68,7 @@ impl Area {
 /// What is marched: a field with what its box and the picture say of it.
 pub(crate) struct Solid<'a> {
     pub(crate) program: &'a Program,
-    /// What is left of the program in parts of space, where that is worth while.
+    /// What is left of the program in parts of space, where that is worth while: of [`Program::marched`] where the surface is `sought`.
     pub(crate) cells: Option<&'a Cells>,
     pub(crate) region: Region,
     pub(crate) view: &'a View,
@@ -128,9 +128,18 @@ impl Solid<'_> {
     /// there are any. With [`Solid::gradients`] and [`Solid::marks`] the one way in to the field.
     #[inline(always)]
     pub(crate) fn values<S: Simd>(&self, s: S, work: &mut Workspace, n: usize) {
-        match self.cells {
+        match self.cells.filter(|_| !self.sought) {
             Some(cells) => cells.values(s, work, n),
             None => zeroset_eval::values(s, self.program.values(), work, n),
+        }
+    }
+
+    /// As [`Solid::values`], of what is marched.
+    #[inline(always)]
+    fn marched<S: Simd>(&self, s: S, work: &mut Workspace, n: usize) {
+        match self.cells {
+            Some(cells) => cells.values(s, work, n),
+            None => zeroset_eval::values(s, self.program.marched().values(), work, n),
         }
     }
 
@@ -139,11 +148,11 @@ impl Solid<'_> {
     /// nothing.
     #[inline(always)]
     pub(crate) fn clearances<S: Simd>(&self, s: S, work: &mut Workspace, n: usize) {
-        self.values(s, work, n);
+        self.marched(s, work, n);
         self.widen(work, n);
     }
 
-    /// Makes clearances of the values in the workspace.
+    /// Makes clearances of what [`Solid::sides`] found, where the surface is sought.
     #[inline(always)]
     pub(crate) fn widen(&self, work: &mut Workspace, n: usize) {
         match self.cells {
@@ -161,7 +170,7 @@ impl Solid<'_> {
     #[inline(always)]
     pub(crate) fn sides<S: Simd>(&self, s: S, work: &mut Workspace, n: usize) {
         if self.sought {
-            self.values(s, work, n);
+            self.marched(s, work, n);
         } else {
             self.clearances(s, work, n);
         }
@@ -169,7 +178,7 @@ impl Solid<'_> {
 
     /// As [`zeroset_eval::gradients`].
     pub(crate) fn gradients<S: Simd>(&self, s: S, work: &mut Workspace, n: usize) {
-        match self.cells {
+        match self.cells.filter(|_| !self.sought) {
             Some(cells) => cells.gradients(s, work, n),
             None => zeroset_eval::gradients(s, self.program.values(), work, n),
         }
@@ -177,7 +186,7 @@ impl Solid<'_> {
 
     /// As [`zeroset_eval::marks`].
     pub(crate) fn marks<S: Simd>(&self, s: S, work: &mut Workspace, n: usize) {
-        match self.cells {
+        match self.cells.filter(|_| !self.sought) {
             Some(cells) => cells.marks(s, work, n),
             None => zeroset_eval::marks(s, self.program.marks(), work, n),
         }
@@ -404,8 +413,10 @@ impl Scratch {
     pub(crate) fn new(program: &Program, beside: Option<&Program>) -> Scratch {
         let row = || Row::ZERO;
         let mut work = Workspace::new(program.values(), program.marks());
+        work.make_room(program.marched().values());
         if let Some(beside) = beside {
             work.make_room(beside.values());
+            work.make_room(beside.marched().values());
         }
         Scratch {
             work,

@@ -112,15 +112,16 @@ fn along<S: Simd>(
         return behind;
     }
     let p = from + way * t;
-    let slope = |dx: f32, dy: f32, dz: f32| {
-        let by = v3(splat(dx), splat(dy), splat(dz));
-        volume.distance(0, p + by) - volume.distance(0, p - by)
-    };
-    let uphill = v3(
-        slope(1.0, 0.0, 0.0),
-        slope(0.0, 1.0, 0.0),
-        slope(0.0, 0.0, 1.0),
-    );
+    // in a loop, so that what a sample takes is compiled once
+    let mut uphill = Vec3::splat(splat(0.0));
+    for axis in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
+        let by = v3(splat(axis[0]), splat(axis[1]), splat(axis[2]));
+        let mut rise = splat(0.0);
+        for side in [1.0, -1.0] {
+            rise = rise + volume.distance(0, p + by * side) * side;
+        }
+        uphill = uphill + by * rise;
+    }
     let normal = uphill / uphill.length().max(1e-12);
     let place = volume.world(p);
     let light = volume.light(place, normal, reading);

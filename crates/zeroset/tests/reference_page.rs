@@ -31,13 +31,28 @@ fn range(min: f64, max: f64, unit: Unit) -> String {
     }
 }
 
+/// The small picture of an entry, where there is one: `crates/testkit/tests/thumbnails.rs` makes them.
+fn picture(name: &str) -> String {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../docs/fields");
+    match folder.join(format!("{name}.png")).exists() {
+        true => format!("![{name}](fields/{name}.png)\n\n"),
+        false => String::new(),
+    }
+}
+
 fn entry(out: &mut String, info: &Info, says: &str) {
     let source = if info.source.is_empty() {
         String::new()
     } else {
         format!(" ({})", info.source)
     };
-    writeln!(out, "### `{}`\n\n{}{source} {says}\n", info.name, info.doc).unwrap();
+    let picture = picture(info.name);
+    writeln!(
+        out,
+        "### `{}`\n\n{picture}{}{source} {says}\n",
+        info.name, info.doc
+    )
+    .unwrap();
     if info.params.is_empty() {
         return;
     }
@@ -93,7 +108,13 @@ fn methods(out: &mut String) {
                 (true, false) => format!("`{}()`, `--{} {}`", method.word, group.key, method.name),
                 (false, _) => format!("`\"{}\"`", method.name),
             };
-            writeln!(out, "### {word}\n\n{} ({})\n", method.doc, method.source).unwrap();
+            let picture = picture(&format!("{}_{}", group.key, method.name));
+            writeln!(
+                out,
+                "### {word}\n\n{picture}{} ({})\n",
+                method.doc, method.source
+            )
+            .unwrap();
             if method.params.is_empty() {
                 continue;
             }
@@ -168,7 +189,12 @@ fn language(out: &mut String) {
             .iter()
             .filter(|w| group(w) == (name, "") || group(w).1 == title)
         {
-            writeln!(out, "### `{}`\n\n{}\n", signature(word), word.doc).unwrap();
+            // functions of numbers may have the names of patterns
+            let picture = match title {
+                "Patterns" if !word.kind.starts_with("method") => picture(word.name),
+                _ => String::new(),
+            };
+            writeln!(out, "### `{}`\n\n{picture}{}\n", signature(word), word.doc).unwrap();
             let said: Vec<_> = word.params.iter().filter(|p| !p.2.is_empty()).collect();
             if said.is_empty() {
                 continue;

@@ -50,6 +50,36 @@ fn a_picture_is_certified() {
 }
 
 #[test]
+fn a_formula_without_a_slope_is_checked_and_certified() {
+    let folder = Folder::with(
+        "show(field(lambda p: sqrt(abs(p.x)) + sqrt(abs(p.y)) + sqrt(abs(p.z)) - 1.2), name = \"star\")\n\
+         camera(eye = (2, 1.5, 3), target = (0, 0, 0), fov = 40)\n",
+    );
+    let said = folder.good("check scene.star").out;
+    assert!(
+        said.contains("By ranges: no slope holds for all of star"),
+        "{said}"
+    );
+    assert!(
+        said.contains("`sqrt(abs(x))` is infinitely steep"),
+        "{said}"
+    );
+    let json = folder.good("check scene.star --json").json();
+    assert_eq!(json["proven"], false);
+    let sought = json["objects"][0]["sought"].as_array().expect("reasons");
+    assert_eq!(sought.len(), 1);
+    let certified = folder
+        .good("certify scene.star --size 40x30 --at-least 99")
+        .out;
+    assert!(certified.contains("0 wrong"), "{certified}");
+    let why = folder.good("why scene.star 20 15 --size 40x30").out;
+    assert!(why.contains("by ranges"), "{why}");
+    // the GPU says that it does not, where it is asked for by name
+    let said = folder.run("render scene.star --backend gpu --size 16x12 -o x.png");
+    assert!(said.code != Some(0), "{}", said.err);
+}
+
+#[test]
 fn a_pixel_says_why() {
     let folder = Folder::with(SCENE);
     let said = folder.good("why scene.star 20 15 --size 40x30").out;
