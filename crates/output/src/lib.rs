@@ -3,7 +3,7 @@
 //! - [`display`]: texts of strangers, fit to be shown;
 //! - [`atomic`]: files that appear whole or not at all;
 //! - [`picture`] and [`tone`]: from a film's linear light to what a screen shows;
-//! - [`format`](mod@format): PNG and OpenEXR;
+//! - [`format`](mod@format): PNG and OpenEXR, with what makes a picture again in them;
 //! - [`view`]: every plane of a film as a picture;
 //! - [`denoise`]: pictures without the noise of what was sampled at random;
 //! - [`compare`]: how different two pictures are.

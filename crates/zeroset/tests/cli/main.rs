@@ -1,5 +1,6 @@
 //! The command line from outside: exit codes, what goes to which stream, and what happens to files.
 
+mod again;
 mod backend;
 mod bake;
 mod compare;
