@@ -152,6 +152,9 @@ pub(crate) struct RenderArgs {
     /// is shown gets no floor either
     #[arg(long, conflicts_with_all = ["view", "denoise"])]
     pub transparent: bool,
+    /// Add mattes of the objects to an .exr, as Cryptomatte: programs that compose pictures select objects by their names, with smooth edges
+    #[arg(long, conflicts_with_all = ["view", "time_limit"])]
+    pub cryptomatte: bool,
     /// Bits a channel of a PNG. Default: 8
     #[arg(long, value_name = "BITS", value_parser = PossibleValuesParser::new(["8", "16"]))]
     pub bits: Option<String>,

@@ -117,7 +117,7 @@ fn exr_note(mut file: BufReader<File>, key: &str) -> Result<Option<String>, Read
             own.or_else(|| header.shared_attributes.other.get(&name))
         });
     Ok(held.and_then(|value| match value {
-        exr::AttributeValue::Text(text) => Some(text.to_string()),
+        exr::AttributeValue::Text(text) => Some(String::from_utf8_lossy(text.bytes()).into_owned()),
         _ => None,
     }))
 }

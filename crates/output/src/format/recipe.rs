@@ -52,6 +52,9 @@ pub struct Recipe {
     /// Whether the background is left out.
     #[serde(default, skip_serializing_if = "is_false")]
     pub transparent: bool,
+    /// Whether an OpenEXR file has mattes of the objects.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub cryptomatte: bool,
     /// Whether the noise was taken out.
     #[serde(default, skip_serializing_if = "is_false")]
     pub denoise: bool,

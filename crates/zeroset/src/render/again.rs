@@ -102,17 +102,18 @@ fn follow(args: &mut RenderArgs, recipe: &Recipe) -> Result<(), String> {
         return Err("its noise is not above 0".to_owned());
     }
     // one of these is asked for: as many as there may be
+    let is_exr = matches!(
+        args.output.as_deref().map(Container::of),
+        Some(Ok(Container::Exr))
+    );
+    args.cryptomatte |= recipe.cryptomatte && is_exr && args.time_limit.is_none();
     if args.view.is_none() && !args.transparent && !args.denoise {
-        let of_colour = matches!(
-            args.output.as_deref().map(Container::of),
-            Some(Ok(Container::Exr))
-        );
         let named = |name: &String| {
             let found = Plane::ALL.into_iter().find(|p| p.name() == name);
             found.ok_or_else(|| "it shows no plane of a film".to_owned())
         };
         let view = recipe.view.as_ref().map(named).transpose()?;
-        args.view = view.filter(|_| !of_colour);
+        args.view = view.filter(|_| !is_exr);
         args.transparent = recipe.transparent;
         args.denoise = recipe.denoise;
         if args.view.is_some_and(|view| view != Plane::Colour) && (args.transparent || args.denoise)

@@ -19,21 +19,29 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use zeroset_language::load::{Loaded, Options};
 use zeroset_output::atomic::probe;
+use zeroset_output::cryptomatte::{self, Mattes};
 use zeroset_output::denoise;
+use zeroset_output::format::exr::{self, Beside};
 use zeroset_output::format::png::Depth;
 use zeroset_output::format::recipe::{self, Recipe};
-use zeroset_output::format::{ENTRY, Metadata, exr, png};
+use zeroset_output::format::{ENTRY, Metadata, png};
 use zeroset_output::picture::{Developed, Picture, Rows};
 use zeroset_output::tone;
 use zeroset_output::view::{PlaneView, needed};
 use zeroset_scene::film::Plane;
+use zeroset_scene::progressive::filter;
 use zeroset_scene::render::{Frame, RenderError};
 use zeroset_scene::scene::Scene;
+use zeroset_scene::settings::Antialias;
 use zeroset_scene::valid::SceneError;
+
+/// Rays a pixel of the mattes of a picture that converges.
+const MATTE_RAYS: u32 = 64;
 
 /// A picture, and what it took.
 struct Made {
     frame: Frame,
+    mattes: Option<Mattes>,
     used: Used,
     /// The share of it that is finished.
     finished: f64,
@@ -63,6 +71,12 @@ impl<'a> Job<'a> {
         {
             let help = "number the frames as pictures: end the name in .png or .exr";
             let message = format!("{} has no transparent pixels", path.display());
+            return Err(Failure::with_help(Exit::Usage, message, help));
+        }
+        let is_exr = |path: &PathBuf| matches!(Container::of(path), Ok(Container::Exr));
+        if args.cryptomatte && !args.output.as_ref().is_some_and(is_exr) {
+            let help = "name the picture: -o picture.exr";
+            let message = "only an .exr holds the mattes of --cryptomatte";
             return Err(Failure::with_help(Exit::Usage, message, help));
         }
         if let Some(path) = &args.output
@@ -191,6 +205,7 @@ impl<'a> Job<'a> {
             view: args.view.map(|view| view.name().to_owned()),
             no_legend: args.no_legend,
             transparent: args.transparent,
+            cryptomatte: args.cryptomatte,
             denoise: args.denoise,
             bits: args.bits.as_ref().and_then(|bits| bits.parse().ok()),
             rounds: progressive::is_asked(args),
@@ -226,6 +241,9 @@ impl<'a> Job<'a> {
             let [width, height] = scene.settings().size.map(u64::from);
             let bytes = zeroset_scene::progressive::bytes(scene.settings().size, planes);
             copies = copies.max(bytes.div_ceil((width * height).max(1)));
+        }
+        if self.args.cryptomatte {
+            copies += cryptomatte::BYTES;
         }
         (options.limits)
             .check_picture(scene.settings().size, planes, copies)
@@ -297,14 +315,44 @@ impl<'a> Job<'a> {
             cancelled.bar.finish_and_clear();
             rendered.film.cut_out(&behind?.0.film);
         }
+        let mattes = match self.args.cryptomatte {
+            true => Some(self.mattes(scene, cancelled)?),
+            false => None,
+        };
         let (finished, lack) = lack.map_or((1.0, None), |(share, words)| (share, Some(words)));
         Ok(Made {
             frame: rendered,
+            mattes,
             used,
             finished,
             lack,
             convergence,
         })
+    }
+
+    /// The mattes of the objects of a scene.
+    fn mattes(
+        &self,
+        scene: &Scene,
+        cancelled: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Mattes, Failure> {
+        let mut scene = scene.clone();
+        if progressive::is_asked(self.args) {
+            // which has many more rays than it states
+            let (samples, filter) = (MATTE_RAYS, filter(scene.settings().antialias));
+            scene.edit_moments(|parts| {
+                parts.settings.antialias = Antialias::Supersample { samples, filter };
+                Ok::<(), SceneError>(())
+            })?;
+        }
+        let progress = Progress {
+            bar: self.console.bar("mattes"),
+            cancelled,
+        };
+        let prepare = |scene: &Scene| Ok(self.engine.prepare(scene)?.0);
+        let mattes = Mattes::rendered(&prepare, &scene, &progress);
+        progress.bar.finish_and_clear();
+        Ok(mattes?)
     }
 
     fn write(
@@ -338,12 +386,12 @@ impl<'a> Job<'a> {
         }
         match Container::of(path)? {
             Container::Exr => {
-                write_watched(path, self.console, cancelled, |writer, observer| match self
-                    .args
-                    .transparent
-                {
-                    true => exr::write_cut_out(writer, &rendered.film, &notes, observer),
-                    false => exr::write_watched(writer, &rendered.film, &notes, observer),
+                let beside = Beside {
+                    is_cut_out: self.args.transparent,
+                    mattes: made.mattes.as_ref(),
+                };
+                write_watched(path, self.console, cancelled, |writer, observer| {
+                    exr::write_beside(writer, &rendered.film, &beside, &notes, observer)
                 })
             }
             Container::Png => {

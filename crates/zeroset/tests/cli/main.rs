@@ -5,6 +5,7 @@ mod backend;
 mod bake;
 mod compare;
 mod converge;
+mod cryptomatte;
 mod exits;
 #[cfg(feature = "shaders")]
 mod export;
