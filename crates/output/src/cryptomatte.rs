@@ -55,6 +55,9 @@ pub fn id(name: &str) -> f32 {
     f32::from_bits((hash & 0x807f_ffff) | (exponent << 23))
 }
 
+/// Makes a scene ready.
+pub type Prepare<'a> = dyn Fn(&Scene) -> Result<Box<dyn Prepared>, RenderError> + 'a;
+
 /// The mattes of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mattes {
@@ -177,7 +180,7 @@ impl Mattes {
     /// # Errors
     /// See [`RenderError`].
     pub fn rendered(
-        prepare: &dyn Fn(&Scene) -> Result<Box<dyn Prepared>, RenderError>,
+        prepare: &Prepare<'_>,
         scene: &Scene,
         observer: &dyn Observer,
     ) -> Result<Mattes, RenderError> {

@@ -70,6 +70,9 @@ enum Curve {
     Waves(usize, Vec<[f64; 2]>, f64),
 }
 
+/// What inputs add to a number, by the inputs' numbers.
+type Curves = Vec<(usize, Curve)>;
+
 /// Numbers that change, as formulas.
 #[derive(Debug, Default)]
 pub(crate) struct Motion {
@@ -78,7 +81,7 @@ pub(crate) struct Motion {
     pub(crate) held: Vec<Held>,
     periods: Vec<f64>,
     /// By place: what the number is, and what each input adds.
-    formulas: Vec<(usize, f64, Vec<(usize, Curve)>)>,
+    formulas: Vec<(usize, f64, Curves)>,
     /// Bounds that hold for all that was tried, by place.
     pub(crate) bounds: Vec<(usize, f64)>,
 }
@@ -162,7 +165,7 @@ pub(crate) fn found<'a>(inputs: &'a [Input], base: Numbers, make: &'a mut Make<'
         known: HashMap::new(),
     };
     let mut motion = Motion::default();
-    let mut curves: HashMap<usize, Vec<(usize, Curve)>> = HashMap::new();
+    let mut curves: HashMap<usize, Curves> = HashMap::new();
     for (number, input) in inputs.iter().enumerate() {
         let held = |why: String| Held {
             name: input.name.clone(),
@@ -250,11 +253,7 @@ fn near(samples: impl Iterator<Item = f64>) -> f64 {
         .max(1e-30)
 }
 
-fn slider(
-    tried: &mut Tried<'_>,
-    input: usize,
-    [min, max]: [f64; 2],
-) -> Result<Vec<(usize, Curve)>, Why> {
+fn slider(tried: &mut Tried<'_>, input: usize, [min, max]: [f64; 2]) -> Result<Curves, Why> {
     let (middle, half) = (0.5 * (min + max), 0.5 * (max - min));
     let angle = |k: usize| PI * (k as f64 + 0.5) / NODES as f64;
     let mut samples = Vec::new();
@@ -309,11 +308,7 @@ fn chebyshev(factors: &[f64], x: f64) -> f64 {
     x * a - b
 }
 
-fn waves(
-    tried: &mut Tried<'_>,
-    input: usize,
-    periods: &mut Vec<f64>,
-) -> Result<Vec<(usize, Curve)>, Why> {
+fn waves(tried: &mut Tried<'_>, input: usize, periods: &mut Vec<f64>) -> Result<Curves, Why> {
     let start = tried.inputs[input].value;
     // places that no simple period has in common
     let tests: Vec<f64> = [0.137, 0.731, 1.919, 3.371, 7.717, 16.329, 41.77, 133.37]
@@ -484,7 +479,7 @@ fn rounded(x: f64) -> f64 {
 fn holds_together(
     tried: &mut Tried<'_>,
     carried: &[usize],
-    curves: &HashMap<usize, Vec<(usize, Curve)>>,
+    curves: &HashMap<usize, Curves>,
     periods: &[f64],
 ) -> bool {
     let inputs = tried.inputs;
@@ -817,11 +812,14 @@ mod tests {
         }
     }
 
+    /// Numbers and their structure.
+    type Scene<'a> = dyn Fn(&[f64]) -> Option<(Vec<f64>, u64)> + 'a;
+
     /// What cannot be followed is left out whole, with the reason.
     #[test]
     fn what_no_formula_has_is_held() {
         let inputs = inputs();
-        let why = |scene: &dyn Fn(&[f64]) -> Option<(Vec<f64>, u64)>| {
+        let why = |scene: &Scene<'_>| {
             let base: Vec<f64> = inputs.iter().map(|i| i.value).collect();
             let (values, structure) = scene(&base).unwrap();
             let mut make =
