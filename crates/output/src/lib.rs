@@ -3,8 +3,9 @@
 //! - [`display`]: texts of strangers, fit to be shown;
 //! - [`atomic`]: files that appear whole or not at all;
 //! - [`picture`] and [`tone`]: from a film's linear light to what a screen shows;
-//! - [`format`](mod@format): PNG and OpenEXR;
+//! - [`format`](mod@format): PNG and OpenEXR, with what makes a picture again in them;
 //! - [`view`]: every plane of a film as a picture;
+//! - [`cryptomatte`]: how much of each pixel belongs to which object;
 //! - [`denoise`]: pictures without the noise of what was sampled at random;
 //! - [`compare`]: how different two pictures are.
 //!
@@ -22,6 +23,7 @@
 
 pub mod atomic;
 pub mod compare;
+pub mod cryptomatte;
 pub mod denoise;
 pub mod display;
 pub mod format;

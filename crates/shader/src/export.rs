@@ -3,17 +3,22 @@
 //! The picture is the one that a GPU renders, but for two things that need buffers: rays are weighted by a box as wide as
 //! their pixel, and there are no cones.
 
+use crate::fold;
 use crate::job::{FieldForm, Parts};
 use crate::layout::{Frame, Shared};
+use crate::motion::{self, Motion, Numbers};
 use crate::texture;
 use naga::back::glsl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::fmt::Write;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use zeroset_field::program::Limits;
 use zeroset_scene::render::RenderError;
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings;
 use zeroset_shade::environment::EnvironmentMap;
+
+pub use crate::motion::{Held, Input};
 
 /// Parameters, table rows, pixels of images, samples of grids and instructions that a file may have, of each: compilers of shaders give up on more.
 const LARGEST: usize = 4000;
@@ -49,7 +54,7 @@ pub fn wgsl(scene: &Scene) -> Result<String, ExportError> {
          // Draw three vertices without buffers with `corners` and `pixel`.\n\n",
         one_line(scene.name())
     );
-    text += &body(scene)?;
+    text += &body(scene, &parts(scene)?)?;
     let [width, height] = scene.settings().size;
     let _ = write!(
         text,
@@ -72,23 +77,109 @@ fn pixel(@builtin(position) position: vec4f) -> @location(0) vec4f {{
     Ok(text)
 }
 
+/// A scene as GLSL, and what of it the text does not have.
+#[derive(Clone, Debug)]
+pub struct Exported {
+    /// The text.
+    pub text: String,
+    /// What is left out, and why; the text says so too.
+    pub held: Vec<Held>,
+}
+
 /// The scene as GLSL that runs when it is pasted into Shadertoy: dragging with the mouse turns the camera.
 ///
 /// # Errors
 /// See [`ExportError`].
 pub fn glsl(scene: &Scene) -> Result<String, ExportError> {
-    let mut source = body(scene)?;
-    source += "
-@fragment
-fn pixel(@location(0) corner: vec2f, @location(1) size: vec2f, @location(2) angles: vec2f) -> @location(0) vec4f {
-    return picture(corner, size, angles);
+    let exported = glsl_moving(scene, &[], &[], &mut |_| None)?;
+    Ok(exported.text)
 }
-";
+
+/// As [`glsl()`], of a scene that time and sliders change: the text follows `iTime`, and has each slider as a number at its head, or as a uniform.
+///
+/// `scene_at` makes the scene for values of the inputs, in their order; none where it fails. `scene` is the one for the values that the inputs
+/// have. `held` is what is known beforehand to be left out.
+///
+/// # Errors
+/// See [`ExportError`].
+pub fn glsl_moving(
+    scene: &Scene,
+    inputs: &[Input],
+    held: &[Held],
+    scene_at: &mut dyn FnMut(&[f64]) -> Option<Scene>,
+) -> Result<Exported, ExportError> {
+    let mut parts = parts(scene)?;
+    let mut scene = scene.clone();
+    let mut inputs = inputs.to_vec();
+    // occlusion by a volume of distances has one that is made anew for each place that is tried
+    let mut motion = Motion::held(&inputs, "a volume of distances is as it was made");
+    if parts.sky.is_none() && !inputs.is_empty() {
+        let mut make = |values: &[f64]| {
+            let scene = scene_at(values)?;
+            Some(numbers(&scene, &self::parts(&scene).ok()?))
+        };
+        let usual = motion::usual(&inputs, &mut make);
+        motion = motion::found(&inputs, numbers(&scene, &parts), &mut make);
+        if let Some(usual) = usual {
+            let values: Vec<f64> = usual.iter().map(|i| i.value).collect();
+            if let Some(base) = make(&values) {
+                let moving = motion::found(&usual, base, &mut make);
+                if moving.moves(&usual)
+                    && let Some(later) = scene_at(&values)
+                {
+                    parts = self::parts(&later)?;
+                    (scene, inputs, motion) = (later, usual, moving);
+                }
+            }
+        }
+    }
+    let (scene, inputs) = (&scene, inputs.as_slice());
+    let mut source = body(scene, &parts)?;
+    if !motion.inputs.is_empty() {
+        source += &motion.text(inputs, |place| place_name(&parts, place));
+    }
+    let mut held = held.to_vec();
+    held.extend(motion.held.iter().cloned());
+    let (mut parameters, mut arguments) = (String::new(), String::new());
+    for (k, _) in motion.inputs.iter().enumerate() {
+        let _ = write!(parameters, ", @location({}) input_{k}: f32", k + 3);
+        let _ = write!(arguments, "{}input_{k}", if k == 0 { "" } else { ", " });
+    }
+    let animate = match motion.inputs.is_empty() {
+        true => String::new(),
+        false => format!("    animate({arguments});\n"),
+    };
+    let _ = write!(
+        source,
+        "
+@fragment
+fn pixel(@location(0) corner: vec2f, @location(1) size: vec2f, @location(2) angles: vec2f{parameters}) -> @location(0) vec4f {{
+{animate}    return picture(corner, size, angles);
+}}
+"
+    );
+    let text = translated(&source)?;
+    let head = Head {
+        name: scene.name(),
+        inputs,
+        carried: &motion.inputs,
+        held: &held,
+    };
+    let text = shadertoy(&head, &text).ok_or_else(|| {
+        ExportError::Translation("the translation has an unknown form".to_owned())
+    })?;
+    Ok(Exported { text, held })
+}
+
+/// WGSL with an entry point `pixel` as GLSL.
+fn translated(source: &str) -> Result<String, ExportError> {
     let wrong = |e: &dyn std::fmt::Display| ExportError::Translation(e.to_string());
-    let module = naga::front::wgsl::parse_str(&source).map_err(|e| wrong(&e))?;
-    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
-        .validate(&module)
-        .map_err(|e| wrong(&e))?;
+    let mut module = naga::front::wgsl::parse_str(source).map_err(|e| wrong(&e))?;
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+    validator.validate(&module).map_err(|e| wrong(&e))?;
+    fold::trim(&mut module);
+    let info = validator.validate(&module).map_err(|e| wrong(&e))?;
+    fold::unname(&mut module, &info);
     let options = glsl::Options {
         version: glsl::Version::Embedded {
             version: 300,
@@ -114,11 +205,103 @@ fn pixel(@location(0) corner: vec2f, @location(1) size: vec2f, @location(2) angl
     .map_err(|e| wrong(&e))?
     .write()
     .map_err(|e| wrong(&e))?;
-    shadertoy(scene.name(), &written).ok_or_else(|| wrong(&"the translation has an unknown form"))
+    Ok(written)
+}
+
+/// What stands at the head of a file.
+struct Head<'a> {
+    name: &'a str,
+    inputs: &'a [Input],
+    /// Numbers of those that the shader has.
+    carried: &'a [usize],
+    held: &'a [Held],
+}
+
+impl Head<'_> {
+    fn text(&self) -> String {
+        let mut text = format!(
+            "// {}: a signed distance field, rendered by sphere tracing. Written by Zeroset.\n\
+             // Paste this into the Image tab of shadertoy.com. Drag with the mouse to look around.\n",
+            one_line(self.name)
+        );
+        for held in self.held {
+            let _ = writeln!(
+                text,
+                "// Not carried: {}: {}.",
+                one_line(&held.name),
+                one_line(&held.why)
+            );
+        }
+        let sliders: Vec<(&Input, [f64; 2], String)> = (self.carried.iter())
+            .filter_map(|i| {
+                Some((
+                    &self.inputs[*i],
+                    self.inputs[*i].range?,
+                    slider(self.inputs, *i),
+                ))
+            })
+            .collect();
+        if sliders.is_empty() {
+            return text;
+        }
+        text += "\n// Sliders: change the numbers, or define SLIDERS_ARE_UNIFORMS and set them from outside.\n#ifdef SLIDERS_ARE_UNIFORMS\n";
+        for (input, [min, max], name) in &sliders {
+            let _ = writeln!(
+                text,
+                "uniform float {name}; // {}: {min} to {max}, at first {}",
+                one_line(&input.name),
+                input.value
+            );
+        }
+        text += "#else\n";
+        for (input, [min, max], name) in &sliders {
+            let _ = writeln!(
+                text,
+                "const float {name} = {:?}; // {}: {min} to {max}",
+                input.value as f32,
+                one_line(&input.name)
+            );
+        }
+        text += "#endif\n";
+        text
+    }
+
+    /// The call that gives the shader what changes.
+    fn animate(&self) -> String {
+        if self.carried.is_empty() {
+            return String::new();
+        }
+        let each = |i: &usize| match self.inputs[*i].range {
+            None => "iTime".to_owned(),
+            Some(_) => slider(self.inputs, *i),
+        };
+        let arguments: Vec<String> = self.carried.iter().map(each).collect();
+        format!("    animate({});\n", arguments.join(", "))
+    }
+}
+
+/// What a slider is called: letters of its name that GLSL takes, and its number where another one is called so.
+fn slider(inputs: &[Input], number: usize) -> String {
+    let of = |input: &Input| {
+        let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+        let mut name: String = input.name.chars().map(plain).take(40).collect();
+        // two of them in a row are not allowed
+        while name.contains("__") {
+            name = name.replace("__", "_");
+        }
+        format!("slider_{}", name.trim_matches('_'))
+    };
+    let name = of(&inputs[number]);
+    let is_taken = inputs[..number].iter().any(|other| of(other) == name);
+    if is_taken || name == "slider_" {
+        format!("{}_number_{number}", name.trim_end_matches('_'))
+    } else {
+        name
+    }
 }
 
 /// Takes what Shadertoy gives itself out of a fragment shader, and puts its entry point in.
-fn shadertoy(name: &str, written: &str) -> Option<String> {
+fn shadertoy(head: &Head<'_>, written: &str) -> Option<String> {
     let (functions, _) = written.split_once("void main() {")?;
     let kept = functions.lines().filter(|line| {
         let given = [
@@ -131,11 +314,7 @@ fn shadertoy(name: &str, written: &str) -> Option<String> {
         ];
         !given.iter().any(|start| line.starts_with(start))
     });
-    let mut text = format!(
-        "// {}: a signed distance field, rendered by sphere tracing. Written by Zeroset.\n\
-         // Paste this into the Image tab of shadertoy.com. Drag with the mouse to look around.\n",
-        one_line(name)
-    );
+    let mut text = head.text();
     let mut blank = false;
     for line in kept {
         // what was taken out leaves no gaps
@@ -151,7 +330,9 @@ fn shadertoy(name: &str, written: &str) -> Option<String> {
     if (iMouse.x + iMouse.y > 0.0) {
         angles = (0.5 - iMouse.xy / iResolution.xy) * vec2(6.2831853, 3.1415927);
     }
-    fragColor = picture(corner, iResolution.xy, angles);
+";
+    text += &head.animate();
+    text += "    fragColor = picture(corner, iResolution.xy, angles);
 }
 ";
     Some(text)
@@ -163,16 +344,105 @@ fn one_line(name: &str) -> String {
         .collect()
 }
 
-/// Everything but entry points.
-fn body(scene: &Scene) -> Result<String, ExportError> {
+fn parts(scene: &Scene) -> Result<Parts, ExportError> {
     let around = EnvironmentMap::renewed(None, scene);
-    let parts = Parts::new(
-        scene,
-        &Limits::default(),
-        FieldForm::Compiled,
-        around.as_deref(),
-        None,
-    )?;
+    let (limits, form) = (Limits::default(), FieldForm::Compiled);
+    Ok(Parts::new(scene, &limits, form, around.as_deref(), None)?)
+}
+
+/// Members of the frame that only bound what there is: they may be larger, or smaller.
+const LOOSE: [(&str, i8); 4] = [
+    ("region_min", -1),
+    ("region_max", 1),
+    ("far", 1),
+    ("rounding", 1),
+];
+
+/// The floats of the frame: name, how many, and where they begin in bytes.
+fn frame_floats() -> impl Iterator<Item = (&'static str, usize, usize)> {
+    Frame::MEMBERS.iter().filter_map(|m| {
+        let count = match m.wgsl {
+            "f32" => 1,
+            "vec2f" => 2,
+            "vec3f" => 3,
+            _ => return None,
+        };
+        Some((m.name, count, m.offset))
+    })
+}
+
+/// All numbers that may change without another shader: parameters, the table, and the frame.
+fn numbers(scene: &Scene, parts: &Parts) -> Numbers {
+    let bytes = bytemuck::bytes_of(&parts.frame);
+    let mut others = bytes.to_vec();
+    let fixed = parts.params.iter().chain(parts.table.as_flattened());
+    let mut values: Vec<f64> = fixed.map(|x| f64::from(*x)).collect();
+    let mut loose = vec![0; values.len()];
+    for (name, count, offset) in frame_floats() {
+        let may = LOOSE
+            .iter()
+            .find(|(n, _)| *n == name)
+            .map_or(0, |(_, may)| *may);
+        for k in 0..count {
+            let at = offset + 4 * k;
+            let word = [bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]];
+            values.push(f64::from(f32::from_ne_bytes(word)));
+            loose.push(may);
+            others[at..at + 4].fill(0);
+        }
+    }
+    let mut hasher = DefaultHasher::new();
+    (&parts.key, parts.params.len(), parts.table.len(), others).hash(&mut hasher);
+    let settings = scene.settings();
+    (settings.exposure.to_bits(), settings.tone).hash(&mut hasher);
+    for image in &parts.images {
+        let bits = |c: &glam::Vec3| c.to_array().map(f32::to_bits);
+        (
+            image.width,
+            image.height,
+            image.pixels.iter().map(bits).collect::<Vec<_>>(),
+        )
+            .hash(&mut hasher);
+    }
+    for grid in &parts.grids {
+        (grid
+            .values()
+            .iter()
+            .map(|x| x.to_bits())
+            .collect::<Vec<_>>())
+        .hash(&mut hasher);
+    }
+    Numbers {
+        structure: hasher.finish(),
+        values,
+        loose,
+    }
+}
+
+/// What a number of [`numbers`] is called in the shader.
+fn place_name(parts: &Parts, place: usize) -> String {
+    let letters = ["x", "y", "z", "w"];
+    let Some(row) = place.checked_sub(parts.params.len()) else {
+        return format!("params[{place}]");
+    };
+    let Some(mut rest) = row.checked_sub(4 * parts.table.len()) else {
+        return format!("table[{}].{}", row / 4, letters[row % 4]);
+    };
+    for (name, count, _) in frame_floats() {
+        if rest < count {
+            return match count {
+                1 => format!("frame.{name}"),
+                _ => format!("frame.{name}.{}", letters[rest]),
+            };
+        }
+        rest -= count;
+    }
+    // no number lies beyond
+    String::new()
+}
+
+/// Everything but entry points.
+fn body(scene: &Scene, parts: &Parts) -> Result<String, ExportError> {
     let large = [
         ("instructions", parts.key.length()),
         ("parameters", parts.params.len()),
@@ -333,4 +603,106 @@ fn number(x: f32) -> String {
         x.clamp(-3.0e38, 3.0e38)
     };
     format!("{x:?}f")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use zeroset_language::assets::Assets;
+    use zeroset_language::document::Document;
+    use zeroset_language::limits;
+    use zeroset_language::load::{Language, Options};
+
+    const SCENE: &str = "bite = slider(\"bite mark\", 0.4, min = 0.1, max = 1.0)
+t = time()
+show(sphere(1) - sphere(0.5).move(x = 1.2 - bite, y = 0.1 * sin(tau * t)), material(color = hsv(100, 0.5 * bite, 1)))
+show(torus(1.4, 0.1).turn(x = 90).move(y = -0.4).smooth_union(sphere(0.2).move(z = 0.5 * cos(3 * t)), radius = bite))
+show(box((0.2 + bite, 1, 1)).turn(y = 40 * t).move(x = 3), name = \"turning\")
+camera(eye = (3 * cos(t / 2), 2, 3 * sin(t / 2)), target = (0, 0, 0))
+";
+
+    /// The numbers of a scene at another time and with another slider are what the formulas say.
+    #[test]
+    fn scenes_move_as_they_do() {
+        let (limits, assets) = (limits::Limits::default(), Assets::default());
+        let mut document =
+            Document::of_text("a.star", SCENE, Language::Starlark, None, &limits, &assets)
+                .expect("a document");
+        let mut scene_at = |values: &[f64]| {
+            let options = Options {
+                time: values[0],
+                set: [("bite mark".to_owned(), values[1].to_string())].into(),
+                ..Options::default()
+            };
+            document.scene(&options).ok().map(|loaded| loaded.scene)
+        };
+        let scene = scene_at(&[0.0, 0.4]).expect("a scene");
+        let inputs = [("time()", 0.0, None), ("bite mark", 0.4, Some([0.1, 1.0]))];
+        let inputs = inputs.map(|(name, value, range)| Input {
+            name: name.to_owned(),
+            value,
+            range,
+        });
+        let exported = glsl_moving(&scene, &inputs, &[], &mut scene_at).expect("a shader");
+        assert_eq!(exported.held, []);
+        let text = exported.text;
+        for line in [
+            "uniform float slider_bite_mark; // bite mark: 0.1 to 1, at first 0.4",
+            "const float slider_bite_mark = 0.4; // bite mark: 0.1 to 1",
+            "    animate(iTime, slider_bite_mark);",
+        ] {
+            assert!(text.lines().any(|l| l == line), "{line}\n{text}");
+        }
+        let made = |scene: &Scene| {
+            let parts = parts(scene).expect("parts");
+            numbers(scene, &parts)
+        };
+        let base = made(&scene);
+        let mut make = |values: &[f64]| scene_at(values).map(|scene| made(&scene));
+        let motion = motion::found(&inputs, base.clone(), &mut make);
+        for k in 0..12u32 {
+            let values = [
+                f64::from(k) * 3.7,
+                0.1 + 0.9 * (f64::from(k) * 0.37).fract(),
+            ];
+            let right = make(&values).expect("numbers");
+            for (place, right) in right.values.iter().enumerate() {
+                let found = motion.at(&inputs, place, base.values[place], &values);
+                let held = match base.loose[place] {
+                    0 => (found - right).abs() <= 2e-5 * right.abs().max(1.0),
+                    sign => f64::from(sign) * (found - right) >= 0.0,
+                };
+                assert!(
+                    found == *right || held,
+                    "{place} at {values:?}: {found}, not {right}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn names_of_sliders_are_names_of_glsl() {
+        let named = |names: &[&str]| {
+            let inputs: Vec<Input> = (names.iter())
+                .map(|name| Input {
+                    name: (*name).to_owned(),
+                    value: 0.0,
+                    range: Some([0.0, 1.0]),
+                })
+                .collect();
+            (0..inputs.len())
+                .map(|i| slider(&inputs, i))
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(
+            named(&["a b", "a-b", "größe", "__", "π"]),
+            [
+                "slider_a_b",
+                "slider_a_b_number_1",
+                "slider_gr_e",
+                "slider_number_3",
+                "slider_number_4"
+            ]
+        );
+    }
 }

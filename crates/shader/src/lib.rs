@@ -29,9 +29,11 @@ mod constants;
 pub mod entry;
 pub mod export;
 mod field;
+mod fold;
 mod formulas;
 pub mod job;
 pub mod layout;
+mod motion;
 mod source;
 pub mod texture;
 

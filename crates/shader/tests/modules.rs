@@ -446,7 +446,7 @@ fn exported_files_are_valid() {
         let text = export::glsl(&loaded.scene).unwrap_or_else(|e| panic!("{what}: {e}"));
         // what Shadertoy puts around a file
         let around = format!(
-            "#version 450\nconst vec3 iResolution = vec3(64.0, 48.0, 1.0);\nconst vec4 iMouse = vec4(1.0);\nlayout(location = 0) out vec4 colour_out;\n{text}\n\
+            "#version 450\nconst vec3 iResolution = vec3(64.0, 48.0, 1.0);\nconst vec4 iMouse = vec4(1.0);\nconst float iTime = 0.5;\nlayout(location = 0) out vec4 colour_out;\n{text}\n\
              void main() {{ mainImage(colour_out, gl_FragCoord.xy); }}\n"
         );
         let options = naga::front::glsl::Options::from(naga::ShaderStage::Fragment);

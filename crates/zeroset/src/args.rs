@@ -7,8 +7,10 @@ use crate::values::{Chosen, Frames, SectionPlane, Size, Window, assignment, help
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueHint};
 use clap_complete::Shell;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use zeroset_language::limits::Limits;
+use zeroset_output::format::recipe::Recipe;
 use zeroset_scene::film::Plane;
 use zeroset_scene::methods::Choice;
 use zeroset_scene::scene::{Scene, SceneParts};
@@ -104,7 +106,7 @@ pub(crate) enum Command {
 }
 
 /// A scene and what changes it.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct SceneArgs {
     /// The scene: a script (.star) or JSON (.json)
     #[arg(value_name = "SCENE", value_hint = ValueHint::FilePath)]
@@ -112,34 +114,37 @@ pub(crate) struct SceneArgs {
     /// Set a parameter of the scene (slider, choice, toggle or color); can be given many times
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment, help_heading = "Scene")]
     pub set: Vec<(String, String)>,
-    /// What time() is in the scene, seconds
+    /// What time() is in the scene, seconds. Default: 0
     #[arg(
         long,
         value_name = "SECONDS",
-        default_value_t = 0.0,
         allow_negative_numbers = true,
         value_parser = crate::values::seconds,
         help_heading = "Scene"
     )]
-    pub time: f64,
+    pub time: Option<f64>,
     /// Change a limit on what a scene may cost; can be given many times. `zeroset fields limits` lists them
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment, help_heading = "Scene")]
     pub limit: Vec<(String, String)>,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct RenderArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
+    /// The scene of a picture that is made again: a .png or .exr in place of SCENE says with which parameters, time, size, camera, methods
+    /// and seed `render` made it, and what is given beside it counts instead. Default: the .star or .json beside the picture with its name
+    #[arg(long = "scene", value_name = "FILE", value_hint = ValueHint::FilePath, help_heading = "Scene")]
+    pub scene_file: Option<PathBuf>,
     /// The picture: .png, or .exr with all planes as layers. Default: named as the scene's file, in this folder
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
     /// Size in pixels, for example 1920x1080. Default: what the scene says, or 512x512
     #[arg(long, value_name = "WxH")]
     pub size: Option<Size>,
-    /// Show a plane of the film as a picture
-    #[arg(long, value_name = "PLANE", value_parser = plane_parser(), default_value = "colour")]
-    pub view: Plane,
+    /// Show a plane of the film as a picture. Default: colour
+    #[arg(long, value_name = "PLANE", value_parser = plane_parser())]
+    pub view: Option<Plane>,
     /// Leave out the strip beside a view that explains its colours
     #[arg(long)]
     pub no_legend: bool,
@@ -147,9 +152,12 @@ pub(crate) struct RenderArgs {
     /// is shown gets no floor either
     #[arg(long, conflicts_with_all = ["view", "denoise"])]
     pub transparent: bool,
-    /// Bits a channel of a PNG
-    #[arg(long, value_name = "BITS", value_parser = PossibleValuesParser::new(["8", "16"]), default_value = "8")]
-    pub bits: String,
+    /// Add mattes of the objects to an .exr, as Cryptomatte: programs that compose pictures select objects by their names, with smooth edges
+    #[arg(long, conflicts_with_all = ["view", "time_limit"])]
+    pub cryptomatte: bool,
+    /// Bits a channel of a PNG. Default: 8
+    #[arg(long, value_name = "BITS", value_parser = PossibleValuesParser::new(["8", "16"]))]
+    pub bits: Option<String>,
     #[command(flatten)]
     pub methods: Methods,
     /// What renders
@@ -196,10 +204,20 @@ pub(crate) struct RenderArgs {
     /// Print what was rendered and what it took as JSON, one line a picture
     #[arg(long)]
     pub json: bool,
+    /// What a picture says of how it was made, that is made again
+    #[arg(skip)]
+    pub recipe: Option<Box<Recipe>>,
+}
+
+impl RenderArgs {
+    /// The plane that is shown.
+    pub(crate) fn plane(&self) -> Plane {
+        self.view.unwrap_or(Plane::Colour)
+    }
 }
 
 /// Methods in place of those that the scene states. `zeroset fields methods` explains them.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Default, PartialEq, Args)]
 pub(crate) struct Methods {
     #[arg(long, value_name = "METHOD", help_heading = "Methods", help = help::<March>("How rays find the surface"))]
     pub march: Option<Chosen<March>>,
@@ -216,6 +234,9 @@ pub(crate) struct Methods {
     /// Rays a pixel, whatever the scene states: as many as --aa supersample,samples=N
     #[arg(long, value_name = "N", help_heading = "Methods", value_parser = clap::value_parser!(u32).range(1..))]
     pub spp: Option<u32>,
+    /// Chooses other random numbers than the scene's, 0 to 4294967295: those of where rays go in a pixel, and of light that is sampled
+    #[arg(long, value_name = "N", help_heading = "Methods")]
+    pub seed: Option<u32>,
     #[arg(long, value_name = "METHOD", help_heading = "Methods", help = help::<Tone>("How light beyond white is shown"))]
     pub tone: Option<Chosen<Tone>>,
     #[arg(long, value_name = "METHOD", help_heading = "Methods", help = help::<Integrator>("Which ways light takes to the eye"))]
@@ -242,6 +263,9 @@ impl Methods {
             let chosen = Chosen(Antialias::Supersample { samples, filter });
             put("spp", Some(chosen), &mut settings.antialias, limits)?;
         }
+        if let Some(seed) = self.seed {
+            settings.seed = seed;
+        }
         put("tone", self.tone, &mut settings.tone, limits)?;
         put("shading", self.shading, &mut settings.shading, limits)?;
         put(
@@ -254,6 +278,54 @@ impl Methods {
             put("shadow", self.shadow, &mut light.shadow, limits)?;
         }
         Ok(())
+    }
+}
+
+/// Every option that chooses a method, as `$each(name, field)`.
+macro_rules! every {
+    ($methods:expr, $each:ident) => {
+        $each!("march", $methods.march);
+        $each!("normals", $methods.normals);
+        $each!("shadow", $methods.shadow);
+        $each!("ao", $methods.ao);
+        $each!("aa", $methods.aa);
+        $each!("shading", $methods.shading);
+        $each!("tone", $methods.tone);
+        $each!("integrator", $methods.integrator);
+    };
+}
+
+impl Methods {
+    /// What is chosen, by option, in the words of the command line.
+    pub(crate) fn written(&self) -> BTreeMap<String, String> {
+        let mut out = BTreeMap::new();
+        macro_rules! write {
+            ($name:literal, $field:expr) => {
+                if let Some(chosen) = $field {
+                    out.insert($name.to_owned(), chosen.to_string());
+                }
+            };
+        }
+        every!(self, write);
+        out
+    }
+
+    /// Chooses a method by its option, where none is chosen.
+    ///
+    /// # Errors
+    /// There is no such option, or it does not take the text.
+    pub(crate) fn choose(&mut self, option: &str, text: &str) -> Result<(), String> {
+        macro_rules! read {
+            ($name:literal, $field:expr) => {
+                if option == $name {
+                    let chosen = text.parse().map_err(|why| format!("--{option}: {why}"))?;
+                    $field.get_or_insert(chosen);
+                    return Ok(());
+                }
+            };
+        }
+        every!(self, read);
+        Err(format!("--{option} chooses no method"))
     }
 }
 

@@ -32,7 +32,7 @@ pub(crate) fn options(args: &SceneArgs, size: Option<[u32; 2]>) -> Result<Option
     }
     Ok(Options {
         set,
-        time: args.time,
+        time: args.time.unwrap_or(0.0),
         size,
         limits,
         moments: false,

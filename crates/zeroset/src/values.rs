@@ -103,6 +103,21 @@ impl<T: Choice> FromStr for Chosen<T> {
     }
 }
 
+/// With all its numbers, so that it is read as what it is.
+impl<T: Choice> fmt::Display for Chosen<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let method = self.0.method();
+        f.write_str(method.name)?;
+        for param in method.params {
+            if let Some(value) = self.0.get(param.name) {
+                let text = param.written(value);
+                write!(f, ",{}={}", param.name, text.trim_matches('"'))?;
+            }
+        }
+        Ok(())
+    }
+}
+
 /// The value of a parameter, from text.
 fn read(param: &Param, text: &str) -> Result<Value, String> {
     match param.kind {
@@ -467,7 +482,13 @@ mod tests {
                     if x >= 0.0 || !matches!(param.kind, Kind::Whole) {
                         assert_eq!(loads("a.json", &json, Language::Json), right, "{json}");
                     }
-                    assert_eq!(flag.parse::<Chosen<T>>().is_ok(), right, "{flag}");
+                    let parsed = flag.parse::<Chosen<T>>();
+                    assert_eq!(parsed.is_ok(), right, "{flag}");
+                    // what is written is read as what it was
+                    if right {
+                        let chosen = Chosen(method);
+                        assert_eq!(chosen.to_string().parse(), Ok(chosen), "{chosen}");
+                    }
                     checked += 1;
                 }
             }

@@ -5,6 +5,7 @@
 
 use super::attributes::Sorted;
 use super::{Asking, Metadata, SOFTWARE};
+use crate::cryptomatte::Mattes;
 use ::exr::prelude::*;
 use std::io::{self, Seek, Write};
 use zeroset_scene::film::{Film, Plane};
@@ -44,30 +45,41 @@ pub fn write_watched(
     notes: &Metadata,
     observer: &dyn Observer,
 ) -> io::Result<()> {
-    write_planes(writer, film, None, notes, observer)
+    write_beside(writer, film, &Beside::default(), notes, observer)
 }
 
-/// As [`write_watched`], of a film that was [cut out](Film::cut_out): its coverage is the channel `A` too, by which OpenEXR has colours multiplied.
+/// What a file has beside the planes of a film.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Beside<'a> {
+    /// Whether the film was [cut out](Film::cut_out): its coverage is the channel `A` too, by which OpenEXR has colours multiplied.
+    pub is_cut_out: bool,
+    /// Mattes of the objects, of the same size.
+    pub mattes: Option<&'a Mattes>,
+}
+
+/// As [`write_watched`], with what is beside the planes of the film.
 ///
 /// # Errors
-/// As [`write_watched`].
-pub fn write_cut_out(
+/// As [`write_watched`]; mattes of another size.
+pub fn write_beside(
     writer: impl Write + Seek,
     film: &Film,
+    beside: &Beside<'_>,
     notes: &Metadata,
     observer: &dyn Observer,
 ) -> io::Result<()> {
-    let opacity = Some(film.plane(Plane::Coverage)).filter(|c| !c.is_empty());
-    write_planes(writer, film, opacity, notes, observer)
-}
-
-fn write_planes(
-    writer: impl Write + Seek,
-    film: &Film,
-    opacity: Option<&[f32]>,
-    notes: &Metadata,
-    observer: &dyn Observer,
-) -> io::Result<()> {
+    let opacity = Some(film.plane(Plane::Coverage)).filter(|c| beside.is_cut_out && !c.is_empty());
+    if let Some(mattes) = beside.mattes
+        && mattes.size() != [film.width(), film.height()]
+    {
+        let [width, height] = mattes.size();
+        let message = format!(
+            "mattes of {width}x{height} for a picture of {}x{}",
+            film.width(),
+            film.height()
+        );
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+    }
     let size = Vec2(film.width() as usize, film.height() as usize);
     let held = Plane::ALL
         .iter()
@@ -85,6 +97,10 @@ fn write_planes(
         })
     });
     let alpha = opacity.map(|a| AnyChannel::new("A", FlatSamples::F32(a.to_vec())));
+    let mattes = beside.mattes.into_iter();
+    let mattes = mattes
+        .flat_map(Mattes::channels)
+        .map(|(name, numbers)| AnyChannel::new(name.as_str(), FlatSamples::F32(numbers)));
     let mut attributes = LayerAttributes {
         software_name: Some(text(SOFTWARE)),
         ..LayerAttributes::default()
@@ -93,11 +109,15 @@ fn write_planes(
         let value = AttributeValue::Text(text(&value));
         attributes.other.insert(text(key), value);
     }
+    for (key, value) in beside.mattes.into_iter().flat_map(Mattes::attributes) {
+        let value = AttributeValue::Text(text(&value));
+        attributes.other.insert(text(&key), value);
+    }
     let layer = Layer::new(
         size,
         attributes,
         Encoding::SMALL_LOSSLESS,
-        AnyChannels::sort(list.chain(alpha).collect()),
+        AnyChannels::sort(list.chain(alpha).chain(mattes).collect()),
     );
     let writer = Sorted::new(Asking { writer, observer });
     let total = u64::from(film.width()) * u64::from(film.height());

@@ -7,6 +7,7 @@ pub mod checkpoint;
 pub mod exr;
 pub mod png;
 pub mod read;
+pub mod recipe;
 
 use crate::display;
 use std::borrow::Cow;
@@ -16,7 +17,7 @@ use zeroset_scene::render::Observer;
 /// Most characters of a title.
 const TITLE: usize = 200;
 /// Most characters of an entry.
-const ENTRY: usize = 1 << 16;
+pub const ENTRY: usize = 1 << 16;
 
 /// What a file says about the picture in it. Nothing in here may name a place on the machine that made it.
 #[derive(Clone, Debug, Default, PartialEq)]

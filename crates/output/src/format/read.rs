@@ -1,4 +1,4 @@
-//! Reading pictures back, to compare them.
+//! Reading pictures back: to compare them, and for what they say of themselves.
 
 use crate::picture::Picture;
 use crate::tone;
@@ -8,6 +8,8 @@ use std::fs::{self, File};
 use std::io::{self, BufReader, Read, Seek};
 use std::path::{Path, PathBuf};
 
+/// Most bytes of a note that is read.
+const NOTE: usize = 1 << 20;
 /// Most pixels of a picture that is read.
 pub const MAX_PIXELS: u64 = 1 << 27;
 
@@ -60,7 +62,80 @@ pub fn read(path: &Path) -> Result<Picture, ReadError> {
     })
 }
 
+/// The note that a PNG or an OpenEXR file has under a name: a text chunk before the pixels, or an attribute of the first header. `None`
+/// where it has none.
+///
+/// # Errors
+/// See [`ReadFailure`]. Pixels are not looked at.
+pub fn note(path: &Path, key: &str) -> Result<Option<String>, ReadError> {
+    let read = || match opened(path)? {
+        (Kind::Png, file) => png_note(file, key),
+        (Kind::Exr, file) => exr_note(file, key),
+    };
+    let short = |text: Option<String>| match text {
+        Some(text) if text.len() > NOTE => Err(ReadFailure::Damaged(format!(
+            "the note `{key}` has {} bytes, at most {NOTE} are read",
+            text.len()
+        ))),
+        other => Ok(other),
+    };
+    read().and_then(short).map_err(|failure| ReadError {
+        path: path.to_owned(),
+        failure,
+    })
+}
+
+fn png_note(file: BufReader<File>, key: &str) -> Result<Option<String>, ReadFailure> {
+    let reader = Decoder::new(file).read_info().map_err(damaged_png)?;
+    let info = reader.info();
+    if let Some(text) = (info.uncompressed_latin1_text.iter()).find(|t| t.keyword == key) {
+        return Ok(Some(text.text.clone()));
+    }
+    // programs that pass a picture on compress its texts
+    if let Some(text) = (info.compressed_latin1_text.iter()).find(|t| t.keyword == key) {
+        let mut text = text.clone();
+        text.decompress_text_with_limit(NOTE).map_err(damaged_png)?;
+        return text.get_text().map(Some).map_err(damaged_png);
+    }
+    let Some(text) = info.utf8_text.iter().find(|t| t.keyword == key) else {
+        return Ok(None);
+    };
+    let mut text = text.clone();
+    text.decompress_text_with_limit(NOTE).map_err(damaged_png)?;
+    text.get_text().map(Some).map_err(damaged_png)
+}
+
+fn exr_note(mut file: BufReader<File>, key: &str) -> Result<Option<String>, ReadFailure> {
+    let metadata = exr::MetaData::read_from_buffered(&mut file, false).map_err(damaged_exr)?;
+    let name = exr::Text::new_or_none(key);
+    let held = metadata
+        .headers
+        .first()
+        .zip(name)
+        .and_then(|(header, name)| {
+            let own = header.own_attributes.other.get(&name);
+            own.or_else(|| header.shared_attributes.other.get(&name))
+        });
+    Ok(held.and_then(|value| match value {
+        exr::AttributeValue::Text(text) => Some(String::from_utf8_lossy(text.bytes()).into_owned()),
+        _ => None,
+    }))
+}
+
+/// What a file begins like.
+enum Kind {
+    Png,
+    Exr,
+}
+
 fn open(path: &Path) -> Result<Picture, ReadFailure> {
+    match opened(path)? {
+        (Kind::Png, file) => read_png(file),
+        (Kind::Exr, file) => read_exr(file),
+    }
+}
+
+fn opened(path: &Path) -> Result<(Kind, BufReader<File>), ReadFailure> {
     // before it is opened, because a pipe would block
     if !fs::metadata(path).map_err(ReadFailure::System)?.is_file() {
         return Err(ReadFailure::Special);
@@ -73,9 +148,25 @@ fn open(path: &Path) -> Result<Picture, ReadFailure> {
         .map_err(ReadFailure::System)?;
     file.rewind().map_err(ReadFailure::System)?;
     match magic.as_slice() {
-        b"\x89PNG" => read_png(file),
-        b"\x76\x2f\x31\x01" => read_exr(file),
+        b"\x89PNG" => Ok((Kind::Png, file)),
+        b"\x76\x2f\x31\x01" => Ok((Kind::Exr, file)),
         _ => Err(ReadFailure::Format),
+    }
+}
+
+fn damaged_png(error: DecodingError) -> ReadFailure {
+    match error {
+        DecodingError::IoError(error) if error.kind() != io::ErrorKind::UnexpectedEof => {
+            ReadFailure::System(error)
+        }
+        other => ReadFailure::Damaged(other.to_string()),
+    }
+}
+
+fn damaged_exr(error: exr::Error) -> ReadFailure {
+    match error {
+        exr::Error::Io(error) => ReadFailure::System(error),
+        other => ReadFailure::Damaged(other.to_string()),
     }
 }
 
@@ -88,28 +179,22 @@ fn check(width: u64, height: u64) -> Result<(), ReadFailure> {
 }
 
 fn read_png(file: BufReader<File>) -> Result<Picture, ReadFailure> {
-    let damaged = |error: DecodingError| match error {
-        DecodingError::IoError(error) if error.kind() != io::ErrorKind::UnexpectedEof => {
-            ReadFailure::System(error)
-        }
-        other => ReadFailure::Damaged(other.to_string()),
-    };
     let mut decoder = Decoder::new(file);
     decoder.set_transformations(Transformations::EXPAND);
     decoder.set_ignore_text_chunk(true);
-    let header = decoder.read_header_info().map_err(damaged)?;
+    let header = decoder.read_header_info().map_err(damaged_png)?;
     let (width, height) = (header.width, header.height);
     check(width.into(), height.into())?;
     decoder.set_limits(Limits {
         bytes: 64 * MAX_PIXELS as usize,
     });
-    let mut reader = decoder.read_info().map_err(damaged)?;
+    let mut reader = decoder.read_info().map_err(damaged_png)?;
     let size = reader.output_buffer_size().ok_or(ReadFailure::Large {
         width: width.into(),
         height: height.into(),
     })?;
     let mut bytes = vec![0; size];
-    reader.next_frame(&mut bytes).map_err(damaged)?;
+    reader.next_frame(&mut bytes).map_err(damaged_png)?;
     let (colour, depth) = reader.output_color_type();
     let channels = colour.samples();
     let wide = depth == ::png::BitDepth::Sixteen;
@@ -140,11 +225,7 @@ fn read_png(file: BufReader<File>) -> Result<Picture, ReadFailure> {
 
 fn read_exr(mut file: BufReader<File>) -> Result<Picture, ReadFailure> {
     use exr::{ReadChannels, ReadLayers};
-    let damaged = |error: exr::Error| match error {
-        exr::Error::Io(error) => ReadFailure::System(error),
-        other => ReadFailure::Damaged(other.to_string()),
-    };
-    let metadata = exr::MetaData::read_from_buffered(&mut file, false).map_err(damaged)?;
+    let metadata = exr::MetaData::read_from_buffered(&mut file, false).map_err(damaged_exr)?;
     for header in &metadata.headers {
         check(
             header.layer_size.width() as u64,
@@ -166,6 +247,6 @@ fn read_exr(mut file: BufReader<File>) -> Result<Picture, ReadFailure> {
         .first_valid_layer()
         .all_attributes()
         .from_buffered(file)
-        .map_err(damaged)?;
+        .map_err(damaged_exr)?;
     Ok(image.layer_data.channel_data.pixels)
 }

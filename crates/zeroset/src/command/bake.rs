@@ -266,7 +266,7 @@ fn of_scene(
     let scene = SceneArgs {
         scene: args.input.clone(),
         set: args.set.clone(),
-        time: args.time,
+        time: Some(args.time),
         limit: args.limit.clone(),
     };
     let mut options = crate::scene::options(&scene, None)?;

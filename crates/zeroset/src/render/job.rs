@@ -1,5 +1,7 @@
 //! One rendering: from a loaded scene to a file.
 
+use super::again;
+use super::digest;
 use super::limited;
 use super::progressive;
 use super::summary::{Evaluations, Summary};
@@ -17,20 +19,29 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use zeroset_language::load::{Loaded, Options};
 use zeroset_output::atomic::probe;
+use zeroset_output::cryptomatte::{self, Mattes};
 use zeroset_output::denoise;
+use zeroset_output::format::exr::{self, Beside};
 use zeroset_output::format::png::Depth;
-use zeroset_output::format::{Metadata, exr, png};
+use zeroset_output::format::recipe::{self, Recipe};
+use zeroset_output::format::{ENTRY, Metadata, png};
 use zeroset_output::picture::{Developed, Picture, Rows};
 use zeroset_output::tone;
 use zeroset_output::view::{PlaneView, needed};
 use zeroset_scene::film::Plane;
+use zeroset_scene::progressive::filter;
 use zeroset_scene::render::{Frame, RenderError};
 use zeroset_scene::scene::Scene;
+use zeroset_scene::settings::Antialias;
 use zeroset_scene::valid::SceneError;
+
+/// Rays a pixel of the mattes of a picture that converges.
+const MATTE_RAYS: u32 = 64;
 
 /// A picture, and what it took.
 struct Made {
     frame: Frame,
+    mattes: Option<Mattes>,
     used: Used,
     /// The share of it that is finished.
     finished: f64,
@@ -62,9 +73,15 @@ impl<'a> Job<'a> {
             let message = format!("{} has no transparent pixels", path.display());
             return Err(Failure::with_help(Exit::Usage, message, help));
         }
+        let is_exr = |path: &PathBuf| matches!(Container::of(path), Ok(Container::Exr));
+        if args.cryptomatte && !args.output.as_ref().is_some_and(is_exr) {
+            let help = "name the picture: -o picture.exr";
+            let message = "only an .exr holds the mattes of --cryptomatte";
+            return Err(Failure::with_help(Exit::Usage, message, help));
+        }
         if let Some(path) = &args.output
             && Container::of(path)? == Container::Exr
-            && args.view != Plane::Colour
+            && args.plane() != Plane::Colour
         {
             let help = "leave out --view, or end the name in .png";
             return Err(Failure::with_help(
@@ -100,11 +117,10 @@ impl<'a> Job<'a> {
         cancelled: &(dyn Fn() -> bool + Sync),
     ) -> Result<Option<Failure>, Failure> {
         let _asking = Asking::begin();
-        let mut scene = loaded.scene.clone();
-        self.args.methods.apply(&mut scene, &options.limits)?;
+        let scene = self.scene(loaded, options)?;
         let mut path = match &self.args.output {
             Some(path) => path.clone(),
-            None => unnamed(&self.args.scene.scene, self.args.view, frame.is_some())?,
+            None => unnamed(&self.args.scene.scene, self.args.plane(), frame.is_some())?,
         };
         let mut label = scene.name().to_string();
         if let Some((number, frames)) = frame {
@@ -115,14 +131,11 @@ impl<'a> Job<'a> {
             label = format!("{label} {}/{}", number - frames.start + 1, frames.len());
         }
         let made = self.produce(loaded, &scene, options, &path, &label, cancelled)?;
-        self.write(
-            &path,
-            &scene,
-            options,
-            &made.frame,
-            made.lack.as_deref(),
-            cancelled,
-        )?;
+        let recipe = self.recipe(loaded, &scene, options, &made);
+        if let Some(followed) = &self.args.recipe {
+            again::say_differences(followed, &recipe.files, &made.used, self.console);
+        }
+        self.write(&path, &scene, options, &made, &recipe, cancelled)?;
         self.report(
             &path,
             &scene,
@@ -144,8 +157,7 @@ impl<'a> Job<'a> {
         path: &Path,
         (number, frames): (u32, &Range<u32>),
     ) -> Result<(Pixels, Option<Failure>), Failure> {
-        let mut scene = loaded.scene.clone();
-        self.args.methods.apply(&mut scene, &options.limits)?;
+        let scene = self.scene(loaded, options)?;
         let label = format!(
             "{} {}/{}",
             scene.name(),
@@ -165,11 +177,49 @@ impl<'a> Job<'a> {
         Ok((Pixels::of(&picture), lack))
     }
 
+    /// What is rendered: the scene with the methods that the flags choose, and the camera of a picture that is made again.
+    fn scene(&self, loaded: &Loaded, options: &Options) -> Result<Scene, Failure> {
+        let mut scene = loaded.scene.clone();
+        self.args.methods.apply(&mut scene, &options.limits)?;
+        let recipe = self.args.recipe.as_ref();
+        match recipe.and_then(|recipe| again::camera(self.args, recipe, &scene)) {
+            Some(camera) => Ok(scene.with_camera(camera)?),
+            None => Ok(scene),
+        }
+    }
+
+    /// What makes the picture again.
+    fn recipe(&self, loaded: &Loaded, scene: &Scene, options: &Options, made: &Made) -> Recipe {
+        let (args, settings) = (self.args, scene.settings());
+        Recipe {
+            format: recipe::FORMAT,
+            zeroset: env!("CARGO_PKG_VERSION").to_owned(),
+            files: digest::of_files(&loaded.files),
+            set: options.set.clone(),
+            time: options.time,
+            size: settings.size,
+            camera: *scene.camera(),
+            seed: settings.seed,
+            spp: args.methods.spp,
+            methods: args.methods.written(),
+            view: args.view.map(|view| view.name().to_owned()),
+            no_legend: args.no_legend,
+            transparent: args.transparent,
+            cryptomatte: args.cryptomatte,
+            denoise: args.denoise,
+            bits: args.bits.as_ref().and_then(|bits| bits.parse().ok()),
+            rounds: progressive::is_asked(args),
+            noise: args.noise,
+            gpu: made.used.adapter().map(str::to_owned),
+            unfinished: made.lack.is_some(),
+        }
+    }
+
     /// What is shown of a scene's films.
     fn plane_view<T>(&self, scene: &Scene, show: impl FnOnce(PlaneView<'_>) -> T) -> T {
         let names: Vec<String> = scene.objects().iter().map(|o| o.name.clone()).collect();
         show(PlaneView {
-            plane: self.args.view,
+            plane: self.args.plane(),
             transform: scene.settings().view_transform(),
             legend: !self.args.no_legend,
             objects: &names,
@@ -191,6 +241,9 @@ impl<'a> Job<'a> {
             let [width, height] = scene.settings().size.map(u64::from);
             let bytes = zeroset_scene::progressive::bytes(scene.settings().size, planes);
             copies = copies.max(bytes.div_ceil((width * height).max(1)));
+        }
+        if self.args.cryptomatte {
+            copies += cryptomatte::BYTES;
         }
         (options.limits)
             .check_picture(scene.settings().size, planes, copies)
@@ -262,9 +315,14 @@ impl<'a> Job<'a> {
             cancelled.bar.finish_and_clear();
             rendered.film.cut_out(&behind?.0.film);
         }
+        let mattes = match self.args.cryptomatte {
+            true => Some(self.mattes(scene, cancelled)?),
+            false => None,
+        };
         let (finished, lack) = lack.map_or((1.0, None), |(share, words)| (share, Some(words)));
         Ok(Made {
             frame: rendered,
+            mattes,
             used,
             finished,
             lack,
@@ -272,15 +330,41 @@ impl<'a> Job<'a> {
         })
     }
 
+    /// The mattes of the objects of a scene.
+    fn mattes(
+        &self,
+        scene: &Scene,
+        cancelled: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Mattes, Failure> {
+        let mut scene = scene.clone();
+        if progressive::is_asked(self.args) {
+            // which has many more rays than it states
+            let (samples, filter) = (MATTE_RAYS, filter(scene.settings().antialias));
+            scene.edit_moments(|parts| {
+                parts.settings.antialias = Antialias::Supersample { samples, filter };
+                Ok::<(), SceneError>(())
+            })?;
+        }
+        let progress = Progress {
+            bar: self.console.bar("mattes"),
+            cancelled,
+        };
+        let prepare = |scene: &Scene| Ok(self.engine.prepare(scene)?.0);
+        let mattes = Mattes::rendered(&prepare, &scene, &progress);
+        progress.bar.finish_and_clear();
+        Ok(mattes?)
+    }
+
     fn write(
         &self,
         path: &Path,
         scene: &Scene,
         options: &Options,
-        rendered: &Frame,
-        lack: Option<&str>,
+        made: &Made,
+        recipe: &Recipe,
         cancelled: &(dyn Fn() -> bool + Sync),
     ) -> Result<(), Failure> {
+        let (rendered, lack) = (&made.frame, made.lack.as_deref());
         let mut notes = Metadata::new(scene.name()).with("Settings", json::line(scene.settings())?);
         if !options.set.is_empty() {
             notes = notes.with("Parameters", json::line(&options.set)?);
@@ -288,24 +372,30 @@ impl<'a> Job<'a> {
         if options.time != 0.0 {
             notes = notes.with("Time", options.time.to_string());
         }
-        if self.args.view != Plane::Colour {
-            notes = notes.with("View", self.args.view.name());
+        if self.args.plane() != Plane::Colour {
+            notes = notes.with("View", self.args.plane().name());
         }
         if let Some(lack) = lack {
             notes = notes.with("Unfinished", lack);
         }
+        match recipe.to_text() {
+            Ok(text) if text.len() <= ENTRY => notes = notes.with(recipe::KEY, text),
+            _ => self.console.note(
+                "The picture does not say how it was made: what was set has too many letters.",
+            ),
+        }
         match Container::of(path)? {
             Container::Exr => {
-                write_watched(path, self.console, cancelled, |writer, observer| match self
-                    .args
-                    .transparent
-                {
-                    true => exr::write_cut_out(writer, &rendered.film, &notes, observer),
-                    false => exr::write_watched(writer, &rendered.film, &notes, observer),
+                let beside = Beside {
+                    is_cut_out: self.args.transparent,
+                    mattes: made.mattes.as_ref(),
+                };
+                write_watched(path, self.console, cancelled, |writer, observer| {
+                    exr::write_beside(writer, &rendered.film, &beside, &notes, observer)
                 })
             }
             Container::Png => {
-                let depth = if self.args.bits == "16" {
+                let depth = if self.args.bits.as_deref() == Some("16") {
                     Depth::Sixteen
                 } else {
                     Depth::Eight
@@ -354,7 +444,7 @@ impl<'a> Job<'a> {
             file: PathBuf::from(path).to_string_lossy().into_owned(),
             width: rendered.film.width(),
             height: rendered.film.height(),
-            view: self.args.view.name(),
+            view: self.args.plane().name(),
             frame,
             time: options.time,
             set: &options.set,
@@ -382,7 +472,7 @@ impl<'a> Job<'a> {
 
 /// The planes that a file needs, and the bytes a pixel that writing it and taking the noise out take beside the film.
 fn planes(path: &Path, args: &RenderArgs) -> Result<(&'static [Plane], u64), Failure> {
-    let (view, denoise) = (args.view, args.denoise);
+    let (view, denoise) = (args.plane(), args.denoise);
     let denoising = if denoise { denoise::BYTES } else { 0 };
     let (planes, copies) = match Container::of(path)? {
         // all numbers once more, one plane after the other, and what they are compressed to

@@ -1,6 +1,8 @@
 //! `zeroset render`: one picture, many frames, or again on every save.
 
+mod again;
 mod animate;
+mod digest;
 mod ffmpeg;
 mod job;
 mod limited;
@@ -20,6 +22,7 @@ use target::Container;
 
 /// Renders.
 pub(crate) fn run(args: &RenderArgs, console: &Console) -> Result<(), Failure> {
+    let args = &again::followed(args, console)?;
     let job = Job::new(args, console)?;
     let clip = match &args.output {
         Some(path) => match Container::of(path)? {

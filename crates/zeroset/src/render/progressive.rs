@@ -1,5 +1,6 @@
 //! `--noise`, `--checkpoint` and `--resume`: pictures that converge, round by round.
 
+use super::digest::Digest;
 use crate::args::RenderArgs;
 use crate::backend::{ChosenRenderer, Used};
 use crate::console::Console;
@@ -27,7 +28,8 @@ const MOST_RAYS: u32 = 1 << 16;
 
 /// Whether the flags ask for a picture that converges.
 pub(crate) fn is_asked(args: &RenderArgs) -> bool {
-    args.noise.is_some() || args.checkpoint.is_some()
+    let recipe = args.recipe.as_ref();
+    args.noise.is_some() || args.checkpoint.is_some() || recipe.is_some_and(|r| r.rounds)
 }
 
 /// When a picture ends, and where it is kept meanwhile.
@@ -377,7 +379,7 @@ fn identity(
         .with("version", env!("CARGO_PKG_VERSION"))
         .with("size", format!("{width}x{height}"))
         // how far a camera sees follows from the scene: which of both changed is to be said
-        .with("scene", format!("{:016x}", digest.0))
+        .with("scene", digest.written())
         .with("camera", json::line(&camera)?)
         .with("settings", json::line(&settings)?)
         .with("renderer", used.adapter().unwrap_or("CPU"))
@@ -395,42 +397,9 @@ fn data_files(loaded: &Loaded) -> impl Iterator<Item = PathBuf> {
         .cloned()
 }
 
-/// The 64-bit hash of Fowler, Noll and Vo (1991, FNV-1a): it tells scenes apart, not enemies.
-struct Digest(u64);
-
-impl Digest {
-    fn new() -> Digest {
-        Digest(0xcbf2_9ce4_8422_2325)
-    }
-
-    fn add(&mut self, bytes: &[u8]) {
-        // lengths too, so that parts cannot flow into each other
-        let length = (bytes.len() as u64).to_le_bytes();
-        for byte in length.iter().chain(bytes) {
-            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// The published hash of "foobar", behind its length.
-    #[test]
-    fn digests_are_those_of_the_paper() {
-        let mut plain = Digest::new();
-        for byte in *b"foobar" {
-            plain.0 = (plain.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-        assert_eq!(plain.0, 0x8594_4171_f739_67e8);
-        let of = |parts: &[&str]| {
-            let mut digest = Digest::new();
-            parts.iter().for_each(|part| digest.add(part.as_bytes()));
-            digest.0
-        };
-        assert_ne!(of(&["ab", "c"]), of(&["a", "bc"]));
-    }
 
     #[test]
     fn numbers_are_short() {

@@ -51,3 +51,42 @@ fn a_scene_too_large_for_a_shader_is_refused() {
     );
     assert_eq!(folder.names(), ["scene.star"]);
 }
+
+/// What moves and what is adjusted stays so in GLSL, as the formulas of the scene itself; what does not is said, also in the file.
+#[test]
+fn time_and_sliders_stay_in_glsl() {
+    let folder = Folder::with(
+        "bite = slider(\"bite\", 0.4, min = 0.0, max = 1.0)
+style = choice(\"style\", [\"round\", \"sharp\"])
+count = slider(\"count\", 2, 1, 4)
+show(sphere(1) - sphere(0.5).move(x = 1.2 - bite, y = 0.1 * sin(tau * time())))
+for i in range(int(count)):
+    show(box(0.3).move(x = 2 + i))
+",
+    );
+    let ended = folder.good("export scene.star --glsl --time 3");
+    let has = |line: &str| assert!(ended.out.contains(line), "{line}\n{}", ended.out);
+    has("uniform float slider_bite; // bite: 0 to 1, at first 0.4");
+    has("const float slider_bite = 0.4; // bite: 0 to 1");
+    has("animate(iTime, slider_bite);");
+    has("= (1.2 + (-1.0 * input_b));");
+    has("0.1 * sin(");
+    let held = [
+        "style: a choice stays as it is set",
+        "count: what the scene is made of is not the same",
+    ];
+    let said = ended.err.split_whitespace().collect::<Vec<_>>().join(" ");
+    for held in held {
+        has(&format!("// Not carried: {held}"));
+        assert!(said.replace("│ ", "").contains(held), "{said}");
+    }
+}
+
+/// A shader has what its scene needs and little else.
+#[test]
+fn small_scenes_are_small_shaders() {
+    let folder =
+        Folder::with("show(sphere())\nrender(integrator = direct(), ao = none(), aa = none())\n");
+    let ended = folder.good("export scene.star --glsl");
+    assert!(ended.out.len() < 85_000, "{} bytes", ended.out.len());
+}

@@ -1,9 +1,11 @@
 //! The command line from outside: exit codes, what goes to which stream, and what happens to files.
 
+mod again;
 mod backend;
 mod bake;
 mod compare;
 mod converge;
+mod cryptomatte;
 mod exits;
 #[cfg(feature = "shaders")]
 mod export;
