@@ -1,0 +1,400 @@
+//! What a field is like: where its surface lies, how steep it is. Scenes are loaded to find out, so that what is measured is what will be
+//! shown.
+
+use crate::ImportError;
+use std::sync::Arc;
+use zeroset_catalogue::bounds::Aabb;
+use zeroset_field::field::{Field, Node};
+use zeroset_field::formula::Formula;
+use zeroset_language::assets::Assets;
+use zeroset_language::document::Document;
+use zeroset_language::files::{Files, InMemory};
+use zeroset_language::load::{Language, Loaded, Options};
+use zeroset_number::{Dual, F64, Vec3, v3};
+
+/// Half the sides of boxes in which surfaces are looked for.
+const BOXES: [f64; 7] = [64.0, 32.0, 16.0, 8.0, 4.0, 2.0, 1.0];
+/// Places along a side of a box.
+const PLACES: usize = 24;
+/// Half the side that is shown of what has no end.
+const OPEN: f64 = 4.0;
+/// A proven slope may be so many times the steepest that is found before a measured one is stated instead.
+const LOOSE: f64 = 6.0;
+/// What a measured slope is multiplied by: the steepest place is seldom found.
+const MARGIN: f64 = 1.25;
+
+/// Light of a scene that states its camera.
+pub(crate) const LIGHT: &str = "sun(direction = (-0.6, -1, -0.7), strength = 0.9, shadow = soft(16))\n\
+     sky(top = \"#7fa3cf\", horizon = \"#e8e2d6\", ambient = 0.5)\n";
+
+/// A field that was looked at.
+#[cfg_attr(
+    not(feature = "glsl"),
+    allow(dead_code, reason = "what only shaders ask for")
+)]
+#[derive(Clone, Debug)]
+pub(crate) struct Framed {
+    /// `bounds = ...`, and `slope = ...` where that is not proven.
+    pub place: String,
+    pub bounds: Aabb,
+    /// The slope that is stated.
+    pub slope: Option<f64>,
+    /// The steepest that was found.
+    pub steepest: f64,
+    /// What the scene says about it.
+    pub comment: String,
+    /// Camera and light.
+    pub camera: String,
+    pub notes: Vec<String>,
+    formula: Arc<Formula>,
+}
+
+impl Framed {
+    #[cfg_attr(
+        not(feature = "glsl"),
+        allow(dead_code, reason = "what only shaders ask for")
+    )]
+    pub(crate) fn bounds_text(&self) -> String {
+        bounds_text(&self.bounds)
+    }
+}
+
+fn bounds_text(b: &Aabb) -> String {
+    let corner = |c: [f64; 3]| format!("({})", c.map(number).join(", "));
+    format!("bounds = ({}, {})", corner(b.min), corner(b.max))
+}
+
+/// A number in few digits.
+pub(crate) fn number(x: f64) -> String {
+    let text = format!("{x:.4}");
+    let text = if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        &text
+    };
+    if text == "-0" {
+        "0".into()
+    } else {
+        text.into()
+    }
+}
+
+/// A scene, or why it is none.
+pub(crate) fn loaded(text: &str, files: Option<InMemory>) -> Result<Loaded, ImportError> {
+    let options = Options {
+        bare: true,
+        ..Options::default()
+    };
+    let files = files.map(|f| Arc::new(f) as Arc<dyn Files>);
+    let document = Document::of_text(
+        "scene.star",
+        text,
+        Language::Starlark,
+        files,
+        &options.limits,
+        &Assets::default(),
+    );
+    let loaded = document.and_then(|mut d| d.scene(&options));
+    loaded.map_err(|failed| ImportError::Scene {
+        message: failed.to_string(),
+        help: failed.report.hint().map(str::to_owned),
+    })
+}
+
+fn formula_of(field: &Field) -> Option<Arc<Formula>> {
+    match field.node() {
+        Node::Formula(formula) => Some(formula.clone()),
+        Node::Place { shape, .. } | Node::Paint { shape, .. } | Node::Sided(shape) => {
+            formula_of(shape)
+        }
+        _ => None,
+    }
+}
+
+fn formula(text: &str, files: Option<InMemory>) -> Result<Arc<Formula>, ImportError> {
+    let loaded = loaded(text, files)?;
+    let found = loaded
+        .scene
+        .objects()
+        .first()
+        .and_then(|o| formula_of(&o.field));
+    found.ok_or_else(|| ImportError::Scene {
+        message: "it shows no formula".into(),
+        help: None,
+    })
+}
+
+fn at([x, y, z]: [f64; 3]) -> Vec3<F64> {
+    v3(F64(x), F64(y), F64(z))
+}
+
+/// The slope to state for a formula.
+pub(crate) fn steepness(text: &str, files: Option<InMemory>) -> Result<f64, ImportError> {
+    let formula = formula(text, files)?;
+    Ok(stated(
+        formula
+            .steepest()
+            .max(steepest_near(&formula, &formula.bounds())),
+    ))
+}
+
+/// A measured slope with a margin, in two digits.
+fn stated(steepest: f64) -> f64 {
+    let wanted = (MARGIN * steepest).clamp(1.0, 1e5);
+    let unit = 10_f64.powf(wanted.log10().floor() - 1.0);
+    (wanted / unit).ceil() * unit
+}
+
+/// The longest gradient on a grid.
+fn steepest_near(formula: &Formula, bounds: &Aabb) -> f64 {
+    let mut longest = 0.0_f64;
+    grid(bounds, PLACES, |p, _| {
+        let d = formula.eval(Dual::point(at(p))).d;
+        let length = d.iter().map(|x| x.0 * x.0).sum::<f64>().sqrt();
+        if length.is_finite() {
+            longest = longest.max(length);
+        }
+    });
+    longest
+}
+
+/// The middles of the cells of a grid, with their indices.
+fn grid(bounds: &Aabb, n: usize, mut visit: impl FnMut([f64; 3], [usize; 3])) {
+    for i in 0..n {
+        for j in 0..n {
+            for k in 0..n {
+                let index = [i, j, k];
+                let p = std::array::from_fn(|a| {
+                    bounds.min[a]
+                        + (index[a] as f64 + 0.5) / n as f64 * (bounds.max[a] - bounds.min[a])
+                });
+                visit(p, index);
+            }
+        }
+    }
+}
+
+/// The cells that the surface or the inside may be in: the first and last along each axis.
+fn occupied(formula: &Formula, bounds: &Aabb, n: usize) -> Option<[[usize; 2]; 3]> {
+    let mut found: Option<[[usize; 2]; 3]> = None;
+    let cell = (0..3)
+        .map(|a| (bounds.max[a] - bounds.min[a]) / n as f64)
+        .fold(0.0, f64::max);
+    grid(bounds, n, |p, index| {
+        // a distance that is nearer than the corners of the cell
+        if formula.eval(at(p)).0 < 0.9 * cell {
+            let ends = found.get_or_insert([[n, 0]; 3]);
+            for a in 0..3 {
+                ends[a] = [ends[a][0].min(index[a]), ends[a][1].max(index[a])];
+            }
+        }
+    });
+    found
+}
+
+/// The box that the surface of a field lies in, or as much of it as is shown of what has no end.
+fn surface(formula: &Formula) -> Option<Aabb> {
+    // which sides have an end, and a box around those
+    let (mut ends, mut within) = ([[false; 2]; 3], None);
+    for half in BOXES {
+        let bounds = Aabb::centred([half; 3]);
+        let Some(cells) = occupied(formula, &bounds, PLACES) else {
+            // too small to be seen from afar, or outside of the smaller box
+            if within.is_some() {
+                break;
+            }
+            continue;
+        };
+        let now: [[bool; 2]; 3] =
+            std::array::from_fn(|a| [cells[a][0] > 0, cells[a][1] + 1 < PLACES]);
+        if within.is_none() {
+            ends = now;
+        } else if (0..3).any(|a| (0..2).any(|s| ends[a][s] && !now[a][s])) {
+            break;
+        }
+        let width = 2.0 * half / PLACES as f64;
+        within = Some(Aabb::new(
+            std::array::from_fn(|a| {
+                if ends[a][0] {
+                    -half + (cells[a][0] as f64 - 0.5) * width
+                } else {
+                    -OPEN
+                }
+            }),
+            std::array::from_fn(|a| {
+                if ends[a][1] {
+                    -half + (cells[a][1] as f64 + 1.5) * width
+                } else {
+                    OPEN
+                }
+            }),
+        ));
+    }
+    let mut bounds = within?;
+    for a in 0..3 {
+        // what ends on one side far from the origin is shown from there on
+        if !ends[a][0] {
+            bounds.min[a] = bounds.min[a].min(bounds.max[a] - OPEN);
+        }
+        if !ends[a][1] {
+            bounds.max[a] = bounds.max[a].max(bounds.min[a] + OPEN);
+        }
+    }
+    // nearer, where it ends
+    for _ in 0..4 {
+        let Some(cells) = occupied(formula, &bounds, PLACES) else {
+            break;
+        };
+        let width: [f64; 3] =
+            std::array::from_fn(|a| (bounds.max[a] - bounds.min[a]) / PLACES as f64);
+        let old = bounds;
+        for a in 0..3 {
+            if ends[a][0] && cells[a][0] > 1 {
+                bounds.min[a] = old.min[a] + (cells[a][0] as f64 - 1.0) * width[a];
+            }
+            if ends[a][1] && cells[a][1] + 2 < PLACES {
+                bounds.max[a] = old.min[a] + (cells[a][1] as f64 + 2.0) * width[a];
+            }
+        }
+    }
+    // a ground without a bottom is cut a little below its surface
+    if !ends[1][0] {
+        let n = 2 * PLACES;
+        let mut full = vec![true; n];
+        let height = bounds.max[1] - bounds.min[1];
+        grid(&bounds, n, |p, index| {
+            if formula.eval(at(p)).0 >= 0.0 {
+                full[index[1]] = false;
+            }
+        });
+        if let Some(top) = full.iter().rposition(|f| *f) {
+            bounds.min[1] += height * (top as f64 - 1.0).max(0.0) / n as f64;
+        }
+    }
+    Some(bounds)
+}
+
+/// Finds out what a field is like. `shown` is a scene that shows it in a place: `bounds = ...` and the like.
+pub(crate) fn framed(
+    shown: &dyn Fn(&str) -> String,
+    files: Option<&dyn Fn() -> InMemory>,
+) -> Result<Framed, ImportError> {
+    let files = || files.map(|f| f());
+    let far = formula(
+        &shown(&format!("size = {}, slope = 1", 2.0 * BOXES[0])),
+        files(),
+    )?;
+    let mut notes = Vec::new();
+    let bounds = match surface(&far) {
+        Some(bounds) => bounds,
+        None => {
+            notes.push("no surface was found within 64 units of the origin: the box of the scene is a guess".to_owned());
+            Aabb::centred([OPEN; 3])
+        }
+    };
+    let bounds = Aabb::new(
+        bounds.min.map(|x| (x * 100.0).floor() / 100.0),
+        bounds.max.map(|x| (x * 100.0).ceil() / 100.0),
+    );
+    let near = formula(
+        &shown(&format!("{}, slope = 1", bounds_text(&bounds))),
+        files(),
+    )?;
+    let steepest = near.steepest().max(steepest_near(&near, &bounds));
+    let place = bounds_text(&bounds);
+    let proven = formula(&shown(&place), files());
+    let (place, slope, comment) = match &proven {
+        Ok(f) if f.slope() <= LOOSE * steepest.max(1.0) => (place, None, String::new()),
+        other => {
+            let slope = stated(steepest);
+            let why = match other {
+                Ok(f) => format!(
+                    "The slope that can be proven is {}, far above what was found",
+                    number(f.slope())
+                ),
+                Err(_) => "How fast this changes at most could not be proven".to_owned(),
+            };
+            let comment = format!(
+                "# {why}: `slope` was measured ({} at its steepest)\n# and has a margin. Where the picture has holes it must be larger; a smaller one is faster.\n",
+                number(steepest)
+            );
+            notes.push(format!(
+                "the slope is measured and not proven: {}",
+                number(slope)
+            ));
+            (
+                format!("{place}, slope = {}", number(slope)),
+                Some(slope),
+                comment,
+            )
+        }
+    };
+    let text = shown(&place);
+    let scene = loaded(&text, files())?.scene;
+    let camera = scene.camera();
+    let formula = match scene.objects().first().and_then(|o| formula_of(&o.field)) {
+        Some(formula) => formula,
+        None => near,
+    };
+    let reach = formula.reach();
+    let reach = if reach.is_empty() || !reach.is_finite() {
+        bounds
+    } else {
+        reach
+    };
+    let (eye, target) = (camera.eye.as_dvec3(), reach.centre());
+    let point = |p: [f64; 3]| {
+        format!(
+            "({})",
+            p.map(|x| number((x * 100.0).round() / 100.0)).join(", ")
+        )
+    };
+    let fov = 2.0 * (0.5 * f64::from(camera.plane_height())).atan().to_degrees();
+    let camera = format!(
+        "camera(eye = {}, target = {}, fov = {})\n{LIGHT}",
+        point(eye.to_array()),
+        point(target),
+        number(fov.clamp(10.0, 90.0).round())
+    );
+    Ok(Framed {
+        place,
+        bounds,
+        slope,
+        steepest,
+        comment,
+        camera,
+        notes,
+        formula,
+    })
+}
+
+/// The different values that another formula has near the surface; `None` if they are many.
+#[cfg_attr(
+    not(feature = "glsl"),
+    allow(dead_code, reason = "what only shaders ask for")
+)]
+pub(crate) fn values_on(text: &str, made: &Framed) -> Result<Option<Vec<f64>>, ImportError> {
+    let other = formula(text, None)?;
+    let mut values: Vec<f64> = Vec::new();
+    let bounds = made.bounds;
+    let n = 2 * PLACES;
+    let cell = (0..3)
+        .map(|a| (bounds.max[a] - bounds.min[a]) / n as f64)
+        .fold(0.0, f64::max);
+    let mut many = false;
+    grid(&bounds, n, |p, _| {
+        if many || made.formula.eval(at(p)).0.abs() > cell * made.steepest.max(1.0) {
+            return;
+        }
+        let value = other.eval(at(p)).0;
+        if !value.is_finite() {
+            return;
+        }
+        if !values.iter().any(|v| (v - value).abs() < 1e-3) {
+            values.push(value);
+            many = values.len() > 64;
+        }
+    });
+    values.sort_by(f64::total_cmp);
+    Ok((!many && values.len() <= 8).then_some(values))
+}
