@@ -20,6 +20,8 @@ const PLACES: usize = 24;
 const OPEN: f64 = 4.0;
 /// A proven slope may be so many times the steepest that is found before a measured one is stated instead.
 const LOOSE: f64 = 6.0;
+/// How deep values go that are cut off inside, of half the longest side.
+const DEPTH: f64 = 0.02;
 /// What a measured slope is multiplied by: the steepest place is seldom found.
 const MARGIN: f64 = 1.25;
 
@@ -37,8 +39,8 @@ pub(crate) struct Framed {
     /// `bounds = ...`, and `slope = ...` where that is not proven.
     pub place: String,
     pub bounds: Aabb,
-    /// The slope that is stated.
-    pub slope: Option<f64>,
+    /// How far below zero its values go, if they are cut off.
+    pub cut: Option<String>,
     /// The steepest that was found.
     pub steepest: f64,
     /// What the scene says about it.
@@ -50,6 +52,15 @@ pub(crate) struct Framed {
 }
 
 impl Framed {
+    /// How fast it changes at most: proven or stated.
+    #[cfg_attr(
+        not(feature = "glsl"),
+        allow(dead_code, reason = "what only shaders ask for")
+    )]
+    pub(crate) fn slope(&self) -> f64 {
+        self.formula.slope()
+    }
+
     #[cfg_attr(
         not(feature = "glsl"),
         allow(dead_code, reason = "what only shaders ask for")
@@ -257,6 +268,24 @@ fn surface(formula: &Formula) -> Option<Aabb> {
             }
         }
     }
+    if !ends[1][0] {
+        let n = 2 * PLACES;
+        if let Some(things) = above_ground(formula, &bounds, n) {
+            for a in [0, 2] {
+                // a thing that is wide is seen from afar, and has more around it
+                let room = 0.6
+                    * (0..3)
+                        .map(|k| things.max[k] - things.min[k])
+                        .fold(0.0, f64::max);
+                if !ends[a][0] {
+                    bounds.min[a] = bounds.min[a].max(things.min[a] - room);
+                }
+                if !ends[a][1] {
+                    bounds.max[a] = bounds.max[a].min(things.max[a] + room);
+                }
+            }
+        }
+    }
     // a ground without a bottom is cut a little below its surface
     if !ends[1][0] {
         let n = 2 * PLACES;
@@ -274,21 +303,52 @@ fn surface(formula: &Formula) -> Option<Aabb> {
     Some(bounds)
 }
 
-/// Finds out what a field is like. `shown` is a scene that shows it in a place: `bounds = ...` and the like.
+/// The box of what stands on a ground, if that is less than all of it.
+fn above_ground(formula: &Formula, bounds: &Aabb, n: usize) -> Option<Aabb> {
+    let mut height = vec![vec![0_usize; n]; n];
+    let mut solid = Vec::new();
+    grid(bounds, n, |p, [i, j, k]| {
+        if formula.eval(at(p)).0 < 0.0 {
+            height[i][k] = height[i][k].max(j + 1);
+            solid.push([i, j, k]);
+        }
+    });
+    // the level that most columns have
+    let mut levels = vec![0; n + 1];
+    height.iter().flatten().for_each(|h| levels[*h] += 1);
+    let ground = (0..=n).max_by_key(|level| levels[*level])?;
+    let width: [f64; 3] = std::array::from_fn(|a| (bounds.max[a] - bounds.min[a]) / n as f64);
+    let mut things = Aabb::EMPTY;
+    for cell in solid.into_iter().filter(|c| c[1] > ground) {
+        if [cell[0], cell[2]].iter().any(|c| *c == 0 || *c + 1 == n) {
+            return None;
+        }
+        for a in 0..3 {
+            let low = bounds.min[a] + cell[a] as f64 * width[a];
+            things.min[a] = things.min[a].min(low);
+            things.max[a] = things.max[a].max(low + width[a]);
+        }
+    }
+    (!things.is_empty()).then_some(things)
+}
+
+/// Finds out what a field is like. `shown` is a scene that shows it in a place, `bounds = ...` and the like, cut off deep inside if
+/// that is given.
 pub(crate) fn framed(
-    shown: &dyn Fn(&str) -> String,
+    shown: &dyn Fn(&str, Option<&str>) -> String,
     files: Option<&dyn Fn() -> InMemory>,
 ) -> Result<Framed, ImportError> {
     let files = || files.map(|f| f());
-    let far = formula(
-        &shown(&format!("size = {}, slope = 1", 2.0 * BOXES[0])),
-        files(),
-    )?;
+    let far = shown(&format!("size = {}, slope = 1", 2.0 * BOXES[0]), None);
+    let far = formula(&far, files())?;
     let mut notes = Vec::new();
     let bounds = match surface(&far) {
         Some(bounds) => bounds,
         None => {
-            notes.push("no surface was found within 64 units of the origin: the box of the scene is a guess".to_owned());
+            notes.push(
+                "no surface was found within 64 units of the origin: the box of the scene is a guess"
+                    .to_owned(),
+            );
             Aabb::centred([OPEN; 3])
         }
     };
@@ -296,17 +356,28 @@ pub(crate) fn framed(
         bounds.min.map(|x| (x * 100.0).floor() / 100.0),
         bounds.max.map(|x| (x * 100.0).ceil() / 100.0),
     );
-    let near = formula(
-        &shown(&format!("{}, slope = 1", bounds_text(&bounds))),
-        files(),
-    )?;
-    let steepest = near.steepest().max(steepest_near(&near, &bounds));
     let place = bounds_text(&bounds);
-    let proven = formula(&shown(&place), files());
-    let (place, slope, comment) = match &proven {
-        Ok(f) if f.slope() <= LOOSE * steepest.max(1.0) => (place, None, String::new()),
+    let steepest_of = |cut: Option<&str>| -> Result<f64, ImportError> {
+        let near = formula(&shown(&format!("{place}, slope = 1"), cut), files())?;
+        Ok(near.steepest().max(steepest_near(&near, &bounds)))
+    };
+    let mut steepest = steepest_of(None)?;
+    let proven = formula(&shown(&place, None), files());
+    let (mut cut, mut slope, mut comment) = (None, None, String::new());
+    match &proven {
+        Ok(f) if f.slope() <= LOOSE * steepest.max(1.0) => {}
         other => {
-            let slope = stated(steepest);
+            // estimators of fractals are steep where nobody looks
+            let longest = bounds.half().into_iter().fold(0.0, f64::max);
+            let depth = number((DEPTH * longest).max(1e-3));
+            let shallow = steepest_of(Some(&depth))?;
+            if shallow < 0.5 * steepest {
+                comment = format!(
+                    "# Deep inside it is cut off at -{depth}: it is steep there, and nobody sees it.\n"
+                );
+                (steepest, cut) = (shallow, Some(depth));
+            }
+            let stated = stated(steepest);
             let why = match other {
                 Ok(f) => format!(
                     "The slope that can be proven is {}, far above what was found",
@@ -314,27 +385,27 @@ pub(crate) fn framed(
                 ),
                 Err(_) => "How fast this changes at most could not be proven".to_owned(),
             };
-            let comment = format!(
+            comment += &format!(
                 "# {why}: `slope` was measured ({} at its steepest)\n# and has a margin. Where the picture has holes it must be larger; a smaller one is faster.\n",
                 number(steepest)
             );
             notes.push(format!(
                 "the slope is measured and not proven: {}",
-                number(slope)
+                number(stated)
             ));
-            (
-                format!("{place}, slope = {}", number(slope)),
-                Some(slope),
-                comment,
-            )
+            slope = Some(stated);
         }
+    }
+    let place = match slope {
+        Some(slope) => format!("{place}, slope = {}", number(slope)),
+        None => place,
     };
-    let text = shown(&place);
+    let text = shown(&place, cut.as_deref());
     let scene = loaded(&text, files())?.scene;
     let camera = scene.camera();
     let formula = match scene.objects().first().and_then(|o| formula_of(&o.field)) {
         Some(formula) => formula,
-        None => near,
+        None => far,
     };
     let reach = formula.reach();
     let reach = if reach.is_empty() || !reach.is_finite() {
@@ -359,7 +430,7 @@ pub(crate) fn framed(
     Ok(Framed {
         place,
         bounds,
-        slope,
+        cut,
         steepest,
         comment,
         camera,

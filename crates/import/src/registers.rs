@@ -37,14 +37,18 @@ pub(crate) fn scene(text: &str, request: &Request<'_>) -> Result<Imported, Impor
             notes: Vec::new(),
         });
     }
-    let shown = |place: &str| {
+    let shown = |place: &str, cut: Option<&str>| {
+        let shape = match cut {
+            None => list.clone(),
+            Some(depth) => format!("lambda p: max({list}(p), -{depth})"),
+        };
         format!(
-            "show(field({list}, {place}), material(color = \"#c8553d\", roughness = 0.5), name = \"list\")\n"
+            "show(field({shape}, {place}), material(color = \"#c8553d\", roughness = 0.5), name = \"list\")\n"
         )
     };
     let made = measure::framed(&shown, Some(&files))?;
     out += &made.comment;
-    out += &shown(&made.place);
+    out += &shown(&made.place, made.cut.as_deref());
     out += &made.camera;
     Ok(Imported {
         text: out,

@@ -45,19 +45,19 @@ pub(crate) fn scene(text: &str, request: &Request<'_>) -> Result<Imported, Impor
     );
     let mut notes = functions.notes.clone();
     let d = distance(&functions);
-    let f = if functions.gives == Gives::Distance {
-        functions.name.clone()
-    } else {
-        format!("lambda p: {d}")
-    };
-    let one = |place: &str| {
+    let one = |place: &str, cut: Option<&str>| {
+        let f = match cut {
+            Some(depth) => format!("lambda p: max({d}, -{depth})"),
+            None if functions.gives == Gives::Distance => functions.name.clone(),
+            None => format!("lambda p: {d}"),
+        };
         format!(
             "show(field({f}, {place}), material(color = \"{}\", roughness = 0.5))\n",
             COLOURS[0]
         )
     };
     let head = out.clone();
-    let made = measure::framed(&|place| format!("{head}{}", one(place)), None)?;
+    let made = measure::framed(&|place, cut| format!("{head}{}", one(place, cut)), None)?;
     notes.extend(made.notes.iter().cloned());
     let materials = match functions.gives {
         Gives::Vector(2) => {
@@ -76,20 +76,20 @@ pub(crate) fn scene(text: &str, request: &Request<'_>) -> Result<Imported, Impor
                 .windows(2)
                 .map(|w| w[1] - w[0])
                 .fold(f64::INFINITY, f64::min);
-            let slope = match made.slope {
-                Some(slope) => slope,
-                None => made.steepest.max(1.0),
+            let here = match &made.cut {
+                None => "d[0]".to_owned(),
+                Some(depth) => format!("max(d[0], -{depth})"),
             };
             let _ = write!(
                 out,
                 "# What has the material of this number. Elsewhere the distance is taken as that of something solid, so that the parts meet in\n\
                  # the surface alone; their slope is that of the whole.\n\
-                 def part(number):\n    def distance_at(p):\n        d = {}(p)\n        return d[0] if abs(d[1] - number) < {} else abs(d[0])\n\
+                 def part(number):\n    def distance_at(p):\n        d = {}(p)\n        return {here} if abs(d[1] - number) < {} else abs({here})\n\
                  \x20   return field(distance_at, {}, slope = {})\n\n",
                 functions.name,
                 number(0.5 * gap),
                 made.bounds_text(),
-                number(slope)
+                number(made.slope())
             );
             for (k, value) in numbers.iter().enumerate() {
                 let _ = writeln!(
@@ -107,7 +107,7 @@ pub(crate) fn scene(text: &str, request: &Request<'_>) -> Result<Imported, Impor
                     "its materials are no few numbers: all is shown in one colour".to_owned(),
                 );
             }
-            out += &one(&made.place);
+            out += &one(&made.place, made.cut.as_deref());
         }
     }
     out += &made.camera;

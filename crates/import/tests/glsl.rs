@@ -280,7 +280,7 @@ fn planted_faults_are_noticed() {
             "apply_matrix(both, s.yz)",
             "apply_transposed(s.yz, both)",
         ),
-        ("materials", "if a.x < b.x", "if b.x < a.x"),
+        ("materials", "if d1.x < d2.x", "if d2.x < d1.x"),
         ("domains", "vec2(p.y, -p.x)", "vec2(-p.y, p.x)"),
         ("rows", "range(1, 4)", "range(1, 3)"),
         ("bulb", "running = False", "running = True"),
@@ -475,7 +475,7 @@ fn long_formulas_are_lines() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 192, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 96, ..ProptestConfig::default() })]
 
     /// Whatever a file holds, it is translated or refused; what is translated is a text that can be loaded, or is refused for a reason.
     #[test]

@@ -202,7 +202,8 @@ fn damaged_trees_are_told_with_their_place() {
     let at = |tree: &mut Value, path: &str, key: &str, to: Value| {
         tree.pointer_mut(path).expect("a node")[key] = to;
     };
-    let cases: [(&dyn Fn(&mut Value), &str); 7] = [
+    type Change<'a> = dyn Fn(&mut Value) + 'a;
+    let cases: [(&Change<'_>, &str); 7] = [
         (
             &|t| at(t, "/rightChild", "matrix", json!([1, 2])),
             "rightChild: `matrix` is a list of 12 numbers",

@@ -560,7 +560,7 @@ impl<'m> Translator<'m> {
             self.kind(w, left),
             Some(ScalarKind::Sint | ScalarKind::Uint)
         );
-        let write: Box<dyn Fn(&[Text]) -> Text> = match op {
+        let write: Operation = match op {
             B::Add => infix("+", SUM, SUM),
             B::Subtract => infix("-", SUM, PRODUCT),
             B::Multiply
@@ -817,8 +817,11 @@ impl<'m> Translator<'m> {
     }
 }
 
+/// What makes a text of those of its operands.
+type Operation = Box<dyn Fn(&[Text]) -> Text>;
+
 /// An operator between two texts: how it binds, and how its right side must.
-fn infix(sign: &'static str, binds: u8, right: u8) -> Box<dyn Fn(&[Text]) -> Text> {
+fn infix(sign: &'static str, binds: u8, right: u8) -> Operation {
     let left = if binds == COMPARED {
         COMPARED + 1
     } else {

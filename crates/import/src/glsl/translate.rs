@@ -204,10 +204,20 @@ pub(super) struct Writer<'f> {
     /// The number of the statement.
     pub at: u32,
     pub loops: Vec<Round>,
-    /// The variable that the last line stores parts of: those, whether it had no value before, and the line.
-    pub parts: Option<(Root, (Vec<Option<String>>, bool), usize)>,
+    /// The parts that the last line stores.
+    pub parts: Option<Parts>,
     /// Variables without a value so far.
     pub unset: HashSet<Handle<LocalVariable>>,
+}
+
+/// Parts of a vector that were stored one after the other.
+pub(super) struct Parts {
+    pub root: Root,
+    pub texts: Vec<Option<String>>,
+    /// Whether it had no value before.
+    pub is_fresh: bool,
+    /// The line that stores them.
+    pub line: usize,
 }
 
 impl Writer<'_> {
@@ -807,20 +817,18 @@ impl<'m> Translator<'m> {
                 S::Loop {
                     body, continuing, ..
                 } => {
-                    let by_point = u32::from(self.leaves_by_point(function, body, times, 0));
+                    let by_point = u32::from(Self::leaves_by_point(body, times, 0));
                     self.block_times(handle, function, body, point + by_point, times)?;
                     // counting goes on whether or not a point has left the loop: that is the same for all points
                     self.block_times(handle, function, continuing, point, times)?;
                 }
                 S::Block(inner) => self.block_times(handle, function, inner, point, times)?,
-                S::Return { value } => {
-                    if let Some(value) = value {
-                        let mut time = times.expressions[value.index()];
-                        if point > 0 || self.facts[&handle].returns > 1 {
-                            time = time.where_it_holds();
-                        }
-                        times.result = times.result.either(time);
+                S::Return { value: Some(value) } => {
+                    let mut time = times.expressions[value.index()];
+                    if point > 0 || self.facts[&handle].returns > 1 {
+                        time = time.where_it_holds();
                     }
+                    times.result = times.result.either(time);
                 }
                 S::Call {
                     function: called,
@@ -883,13 +891,7 @@ impl<'m> Translator<'m> {
     }
 
     /// Whether a block leaves the loop that it is in where a condition of the point holds.
-    fn leaves_by_point(
-        &self,
-        function: &Function,
-        block: &Block,
-        times: &Times,
-        point: u32,
-    ) -> bool {
+    fn leaves_by_point(block: &Block, times: &Times, point: u32) -> bool {
         block.iter().any(|statement| match statement {
             S::Break | S::Continue => point > 0,
             S::If {
@@ -898,10 +900,10 @@ impl<'m> Translator<'m> {
                 reject,
             } => {
                 let point = point + u32::from(times.expressions[condition.index()] != Time::Plain);
-                self.leaves_by_point(function, accept, times, point)
-                    || self.leaves_by_point(function, reject, times, point)
+                Self::leaves_by_point(accept, times, point)
+                    || Self::leaves_by_point(reject, times, point)
             }
-            S::Block(inner) => self.leaves_by_point(function, inner, times, point),
+            S::Block(inner) => Self::leaves_by_point(inner, times, point),
             _ => false,
         })
     }

@@ -1,8 +1,8 @@
 //! The text of a function: statements and expressions.
 
 use super::translate::{
-    AND, CHOICE, OR, Result, Root, Round, SUM, Step, Text, Time, Times, Translator, Writer, atom,
-    blocks, bound, gets_a_name,
+    AND, CHOICE, OR, Parts, Result, Root, Round, SUM, Step, Text, Time, Times, Translator, Writer,
+    atom, blocks, bound, gets_a_name,
 };
 use naga::{
     BinaryOperator, Block, Expression as E, Function, Handle, Literal, LocalVariable, ScalarKind,
@@ -985,27 +985,32 @@ impl<'m> Translator<'m> {
                 Root::Argument(k) => w.times.arguments[k as usize],
                 Root::Global(_) => Time::Plain,
             };
-            let mut parts = vec![None; n];
-            let mut fresh = unset;
-            if let Some((of, known, line)) = w.parts.take()
-                && of == root
+            let mut texts = vec![None; n];
+            let mut is_fresh = unset;
+            if let Some(known) = w.parts.take()
+                && known.root == root
                 && !reads.contains(&root)
-                && line + 1 == w.lines.len()
+                && known.line + 1 == w.lines.len()
             {
-                fresh = known.1;
-                parts = known.0;
+                is_fresh = known.is_fresh;
+                texts = known.texts;
                 w.lines.pop();
             }
-            parts[*k as usize] = Some(value.text);
-            let texts: Vec<String> = (0..n)
-                .map(|k| match &parts[k] {
+            texts[*k as usize] = Some(value.text);
+            let all: Vec<String> = (texts.iter().enumerate())
+                .map(|(k, text)| match text {
                     Some(text) => text.clone(),
-                    None if fresh => "0.0".into(),
+                    None if is_fresh => "0.0".into(),
                     None => part(&name, k, time),
                 })
                 .collect();
-            w.line(format!("{name} = vec{n}({})", texts.join(", ")));
-            w.parts = Some((root, (parts, fresh), w.lines.len() - 1));
+            w.line(format!("{name} = vec{n}({})", all.join(", ")));
+            w.parts = Some(Parts {
+                root,
+                texts,
+                is_fresh,
+                line: w.lines.len() - 1,
+            });
             return Ok(());
         }
         w.parts = None;
