@@ -20,6 +20,8 @@ const PLACES: usize = 24;
 const OPEN: f64 = 4.0;
 /// A proven slope may be so many times the steepest that is found before a measured one is stated instead.
 const LOOSE: f64 = 6.0;
+/// What changes faster than this is asked how far its steps may go.
+const ESTIMATED: f64 = 4.0;
 /// How deep values go that are cut off inside, of half the longest side.
 const DEPTH: f64 = 0.02;
 /// What a measured slope is multiplied by: the steepest place is seldom found.
@@ -167,6 +169,46 @@ fn steepest_near(formula: &Formula, bounds: &Aabb) -> f64 {
         }
     });
     longest
+}
+
+/// How many times too large the values outside of a solid are at most, as distances: the surface is looked for in every direction.
+fn overestimate(formula: &Formula, bounds: &Aabb) -> f64 {
+    const POINTS: u32 = 500;
+    const WAYS: u32 = 16;
+    const PARTS: u32 = 24;
+    const SHARES: [f64; 5] = [0.866_417, 0.750_682, 0.650_406, 0.563_524, 0.488_249];
+    let share = |k: u32, a: usize| (0.5 + f64::from(k) * SHARES[a]).fract();
+    let value = |p| formula.eval(at(p)).0;
+    let mut most = 0.0_f64;
+    for k in 1..=POINTS {
+        let mut p: [f64; 3] =
+            std::array::from_fn(|a| bounds.min[a] + share(k, a) * (bounds.max[a] - bounds.min[a]));
+        for way in 1..=WAYS {
+            let d = value(p);
+            if !(d > 0.0) || !d.is_finite() {
+                break;
+            }
+            let turn = k * WAYS + way;
+            let (z, angle) = (
+                2.0 * share(turn, 3) - 1.0,
+                std::f64::consts::TAU * share(turn, 4),
+            );
+            let r = (1.0 - z * z).max(0.0).sqrt();
+            let direction = [r * angle.cos(), r * angle.sin(), z];
+            let along = |t: f64| std::array::from_fn(|a| p[a] + t * direction[a]);
+            let hit =
+                (1..PARTS).find(|part| value(along(d * f64::from(*part) / f64::from(PARTS))) < 0.0);
+            if let Some(part) = hit {
+                most = most.max(f64::from(PARTS) / f64::from(part));
+            }
+            // what is nearer to the surface is looked at too
+            let nearer = along(0.5 * d / most.max(1.0));
+            if value(nearer) < d {
+                p = nearer;
+            }
+        }
+    }
+    most
 }
 
 /// The middles of the cells of a grid, with their indices.
@@ -377,7 +419,22 @@ pub(crate) fn framed(
                 );
                 (steepest, cut) = (shallow, Some(depth));
             }
-            let stated = stated(steepest);
+            let mut asked = steepest;
+            if steepest > ESTIMATED {
+                let near = formula(
+                    &shown(&format!("{place}, slope = 1"), cut.as_deref()),
+                    files(),
+                )?;
+                let over = overestimate(&near, &bounds);
+                if over < 0.5 * steepest {
+                    comment += &format!(
+                        "# It estimates distances: a step is up to {} times too long, though its values change faster than that, which `check` finds.\n",
+                        number(over.max(1.0))
+                    );
+                    asked = 1.5 * over.max(1.0);
+                }
+            }
+            let stated = stated(asked);
             let why = match other {
                 Ok(f) => format!(
                     "The slope that can be proven is {}, far above what was found",

@@ -138,8 +138,11 @@ fn name_from(file: &Path, scene: Option<&Path>) -> Result<String, Failure> {
 }
 
 fn failure(error: ImportError, file: &Path, text: &str) -> Failure {
-    let message = error.to_string();
     let shown = file.to_string_lossy();
+    let message = match &error {
+        ImportError::Shader { place: Some(_), .. } => error.to_string(),
+        _ => format!("{}: {error}", display::name(&shown, 200)),
+    };
     let report = match error {
         ImportError::Shader { help, place, .. } => {
             let report = Report::new(message);

@@ -92,8 +92,8 @@ fn a_shader_becomes_a_scene_or_is_told_where_it_does_not() {
         3,
         &[
             "textures are not translated",
-            "shader.glsl:1:47",
-            "texture(iChannel1",
+            "shader.glsl:1:46",
+            "iChannel1",
         ],
     );
     assert_eq!(folder.read("shader.star"), text.as_bytes());
