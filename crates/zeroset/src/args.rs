@@ -78,6 +78,8 @@ pub(crate) enum Command {
     /// Print a scene as one shader: WGSL, or GLSL that runs when it is pasted into Shadertoy
     #[cfg(feature = "shaders")]
     Export(ExportArgs),
+    /// Make a scene of a model of others: GLSL as in Shadertoy, JSON of Lipschitz pruning, a register list (.vm)
+    Import(ImportArgs),
     /// List what the scene language offers, or explain one name
     Fields(FieldsArgs),
     /// Draw a section through a scene's distance field, with lines of equal distance
@@ -666,6 +668,19 @@ pub(crate) struct GpuArgs {
     /// Print as JSON
     #[arg(long)]
     pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ImportArgs {
+    /// The file: .glsl or .frag (in a build with --features shaders), .json, .vm
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// The function of a shader that gives the distance at a point. Default: map, sdf, scene, de, DE, GetDist, sdScene or the like
+    #[arg(long, value_name = "NAME")]
+    pub function: Option<String>,
+    /// Write to a scene file instead of standard output
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -99,6 +99,7 @@ fn run(command: &Command, console: &Console) -> Result<(), Failure> {
         Command::Expand(args) => command::expand::run(args, console),
         #[cfg(feature = "shaders")]
         Command::Export(args) => command::export::run(args, console),
+        Command::Import(args) => command::import::run(args, console),
         Command::Slice(args) => command::slice::run(args, console),
         Command::Why(args) => command::why::run(args, console),
         Command::Fields(args) => command::fields::run(args, console),

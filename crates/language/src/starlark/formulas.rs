@@ -444,7 +444,15 @@ impl<'a> Machine<'a> {
             let holds = condition.min(a).max(condition.negated().min(b));
             return self.formula_condition(holds);
         }
-        if let (Some(a), Some(b)) = (self.operand(&builder, yes)?, self.operand(&builder, no)?) {
+        let is_list = |m: &Self, value| {
+            let items = m.store.items(value).unwrap_or_default();
+            items.iter().any(|item| m.vector_length(*item).is_some())
+        };
+        // a list with vectors in it is no vector of all their parts
+        if !is_list(self, yes)
+            && !is_list(self, no)
+            && let (Some(a), Some(b)) = (self.operand(&builder, yes)?, self.operand(&builder, no)?)
+        {
             return self.formula_value(condition.choose(a, b));
         }
         // lists of values of the same length, one by one

@@ -12,6 +12,7 @@ pub(crate) mod fields;
 pub(crate) mod fit_ao;
 #[cfg(feature = "gpu")]
 pub(crate) mod gpu;
+pub(crate) mod import;
 pub(crate) mod init;
 pub(crate) mod mesh;
 pub(crate) mod slice;

@@ -12,6 +12,7 @@ mod export;
 mod fit;
 mod frames;
 mod hostile;
+mod import;
 mod language;
 mod limit;
 mod mesh;
