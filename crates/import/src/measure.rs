@@ -185,7 +185,7 @@ fn overestimate(formula: &Formula, bounds: &Aabb) -> f64 {
             std::array::from_fn(|a| bounds.min[a] + share(k, a) * (bounds.max[a] - bounds.min[a]));
         for way in 1..=WAYS {
             let d = value(p);
-            if !(d > 0.0) || !d.is_finite() {
+            if d <= 0.0 || !d.is_finite() {
                 break;
             }
             let turn = k * WAYS + way;
@@ -420,6 +420,7 @@ pub(crate) fn framed(
                 (steepest, cut) = (shallow, Some(depth));
             }
             let mut asked = steepest;
+            let mut found = format!("{} at its steepest", number(steepest));
             if steepest > ESTIMATED {
                 let near = formula(
                     &shown(&format!("{place}, slope = 1"), cut.as_deref()),
@@ -427,11 +428,11 @@ pub(crate) fn framed(
                 )?;
                 let over = overestimate(&near, &bounds);
                 if over < 0.5 * steepest {
-                    comment += &format!(
-                        "# It estimates distances: a step is up to {} times too long, though its values change faster than that, which `check` finds.\n",
+                    asked = 1.5 * over.max(1.0);
+                    found = format!(
+                        "as an estimate of distances:\n# a step of it is at most {} times too long, though its values change faster than that, as `check` says",
                         number(over.max(1.0))
                     );
-                    asked = 1.5 * over.max(1.0);
                 }
             }
             let stated = stated(asked);
@@ -443,8 +444,7 @@ pub(crate) fn framed(
                 Err(_) => "How fast this changes at most could not be proven".to_owned(),
             };
             comment += &format!(
-                "# {why}: `slope` was measured ({} at its steepest)\n# and has a margin. Where the picture has holes it must be larger; a smaller one is faster.\n",
-                number(steepest)
+                "# {why}: `slope` was measured ({found})\n# and has a margin. Where the picture has holes it must be larger; a smaller one is faster.\n"
             );
             notes.push(format!(
                 "the slope is measured and not proven: {}",
