@@ -181,14 +181,15 @@ fn steepest_near(formula: &Formula, bounds: &Aabb) -> f64 {
 
 /// How many times too large the values outside of a solid are at most, as distances: the surface is looked for in every direction.
 fn overestimate(formula: &Formula, bounds: &Aabb) -> f64 {
-    const POINTS: u32 = 500;
     const WAYS: u32 = 16;
     const PARTS: u32 = 24;
     const SHARES: [f64; 5] = [0.866_417, 0.750_682, 0.650_406, 0.563_524, 0.488_249];
+    let looks = WAYS as usize * PARTS as usize * formula.steps().len().max(1);
+    let points = (10 * WORK / looks).clamp(20, 500) as u32;
     let share = |k: u32, a: usize| (0.5 + f64::from(k) * SHARES[a]).fract();
     let value = |p| formula.eval(at(p)).0;
     let mut most = 0.0_f64;
-    for k in 1..=POINTS {
+    for k in 1..=points {
         let mut p: [f64; 3] =
             std::array::from_fn(|a| bounds.min[a] + share(k, a) * (bounds.max[a] - bounds.min[a]));
         for way in 1..=WAYS {
