@@ -14,8 +14,10 @@ use zeroset_number::{Dual, F64, Vec3, v3};
 
 /// Half the sides of boxes in which surfaces are looked for.
 const BOXES: [f64; 7] = [64.0, 32.0, 16.0, 8.0, 4.0, 2.0, 1.0];
-/// Places along a side of a box.
+/// Places along a side of a box, at most.
 const PLACES: usize = 24;
+/// Operations that a look at a box may take.
+const WORK: usize = 10_000_000;
 /// Half the side that is shown of what has no end.
 const OPEN: f64 = 4.0;
 /// A proven slope may be so many times the steepest that is found before a measured one is stated instead.
@@ -137,6 +139,12 @@ fn formula(text: &str, files: Option<InMemory>) -> Result<Arc<Formula>, ImportEr
     })
 }
 
+/// Places along a side of a box in which a formula is asked: fewer for long ones.
+fn places(formula: &Formula) -> usize {
+    let most = WORK / formula.steps().len().max(1);
+    ((most as f64).cbrt() as usize).clamp(10, PLACES)
+}
+
 fn at([x, y, z]: [f64; 3]) -> Vec3<F64> {
     v3(F64(x), F64(y), F64(z))
 }
@@ -161,7 +169,7 @@ fn stated(steepest: f64) -> f64 {
 /// The longest gradient on a grid.
 fn steepest_near(formula: &Formula, bounds: &Aabb) -> f64 {
     let mut longest = 0.0_f64;
-    grid(bounds, PLACES, |p, _| {
+    grid(bounds, places(formula), |p, _| {
         let d = formula.eval(Dual::point(at(p))).d;
         let length = d.iter().map(|x| x.0 * x.0).sum::<f64>().sqrt();
         if length.is_finite() {
@@ -173,19 +181,20 @@ fn steepest_near(formula: &Formula, bounds: &Aabb) -> f64 {
 
 /// How many times too large the values outside of a solid are at most, as distances: the surface is looked for in every direction.
 fn overestimate(formula: &Formula, bounds: &Aabb) -> f64 {
-    const POINTS: u32 = 500;
     const WAYS: u32 = 16;
     const PARTS: u32 = 24;
     const SHARES: [f64; 5] = [0.866_417, 0.750_682, 0.650_406, 0.563_524, 0.488_249];
+    let looks = WAYS as usize * PARTS as usize * formula.steps().len().max(1);
+    let points = (10 * WORK / looks).clamp(20, 500) as u32;
     let share = |k: u32, a: usize| (0.5 + f64::from(k) * SHARES[a]).fract();
     let value = |p| formula.eval(at(p)).0;
     let mut most = 0.0_f64;
-    for k in 1..=POINTS {
+    for k in 1..=points {
         let mut p: [f64; 3] =
             std::array::from_fn(|a| bounds.min[a] + share(k, a) * (bounds.max[a] - bounds.min[a]));
         for way in 1..=WAYS {
             let d = value(p);
-            if !(d > 0.0) || !d.is_finite() {
+            if d <= 0.0 || !d.is_finite() {
                 break;
             }
             let turn = k * WAYS + way;
@@ -247,25 +256,25 @@ fn occupied(formula: &Formula, bounds: &Aabb, n: usize) -> Option<[[usize; 2]; 3
 
 /// The box that the surface of a field lies in, or as much of it as is shown of what has no end.
 fn surface(formula: &Formula) -> Option<Aabb> {
+    let n = places(formula);
     // which sides have an end, and a box around those
     let (mut ends, mut within) = ([[false; 2]; 3], None);
     for half in BOXES {
         let bounds = Aabb::centred([half; 3]);
-        let Some(cells) = occupied(formula, &bounds, PLACES) else {
+        let Some(cells) = occupied(formula, &bounds, n) else {
             // too small to be seen from afar, or outside of the smaller box
             if within.is_some() {
                 break;
             }
             continue;
         };
-        let now: [[bool; 2]; 3] =
-            std::array::from_fn(|a| [cells[a][0] > 0, cells[a][1] + 1 < PLACES]);
+        let now: [[bool; 2]; 3] = std::array::from_fn(|a| [cells[a][0] > 0, cells[a][1] + 1 < n]);
         if within.is_none() {
             ends = now;
         } else if (0..3).any(|a| (0..2).any(|s| ends[a][s] && !now[a][s])) {
             break;
         }
-        let width = 2.0 * half / PLACES as f64;
+        let width = 2.0 * half / n as f64;
         within = Some(Aabb::new(
             std::array::from_fn(|a| {
                 if ends[a][0] {
@@ -295,23 +304,22 @@ fn surface(formula: &Formula) -> Option<Aabb> {
     }
     // nearer, where it ends
     for _ in 0..4 {
-        let Some(cells) = occupied(formula, &bounds, PLACES) else {
+        let Some(cells) = occupied(formula, &bounds, n) else {
             break;
         };
-        let width: [f64; 3] =
-            std::array::from_fn(|a| (bounds.max[a] - bounds.min[a]) / PLACES as f64);
+        let width: [f64; 3] = std::array::from_fn(|a| (bounds.max[a] - bounds.min[a]) / n as f64);
         let old = bounds;
         for a in 0..3 {
             if ends[a][0] && cells[a][0] > 1 {
                 bounds.min[a] = old.min[a] + (cells[a][0] as f64 - 1.0) * width[a];
             }
-            if ends[a][1] && cells[a][1] + 2 < PLACES {
+            if ends[a][1] && cells[a][1] + 2 < n {
                 bounds.max[a] = old.min[a] + (cells[a][1] as f64 + 2.0) * width[a];
             }
         }
     }
     if !ends[1][0] {
-        let n = 2 * PLACES;
+        let n = 2 * n;
         if let Some(things) = above_ground(formula, &bounds, n) {
             for a in [0, 2] {
                 // a thing that is wide is seen from afar, and has more around it
@@ -330,7 +338,7 @@ fn surface(formula: &Formula) -> Option<Aabb> {
     }
     // a ground without a bottom is cut a little below its surface
     if !ends[1][0] {
-        let n = 2 * PLACES;
+        let n = 2 * n;
         let mut full = vec![true; n];
         let height = bounds.max[1] - bounds.min[1];
         grid(&bounds, n, |p, index| {
@@ -420,6 +428,7 @@ pub(crate) fn framed(
                 (steepest, cut) = (shallow, Some(depth));
             }
             let mut asked = steepest;
+            let mut found = format!("{} at its steepest", number(steepest));
             if steepest > ESTIMATED {
                 let near = formula(
                     &shown(&format!("{place}, slope = 1"), cut.as_deref()),
@@ -427,11 +436,11 @@ pub(crate) fn framed(
                 )?;
                 let over = overestimate(&near, &bounds);
                 if over < 0.5 * steepest {
-                    comment += &format!(
-                        "# It estimates distances: a step is up to {} times too long, though its values change faster than that, which `check` finds.\n",
+                    asked = 1.5 * over.max(1.0);
+                    found = format!(
+                        "as an estimate of distances:\n# a step of it is at most {} times too long, though its values change faster than that, as `check` says",
                         number(over.max(1.0))
                     );
-                    asked = 1.5 * over.max(1.0);
                 }
             }
             let stated = stated(asked);
@@ -443,8 +452,7 @@ pub(crate) fn framed(
                 Err(_) => "How fast this changes at most could not be proven".to_owned(),
             };
             comment += &format!(
-                "# {why}: `slope` was measured ({} at its steepest)\n# and has a margin. Where the picture has holes it must be larger; a smaller one is faster.\n",
-                number(steepest)
+                "# {why}: `slope` was measured ({found})\n# and has a margin. Where the picture has holes it must be larger; a smaller one is faster.\n"
             );
             notes.push(format!(
                 "the slope is measured and not proven: {}",
@@ -505,7 +513,7 @@ pub(crate) fn values_on(text: &str, made: &Framed) -> Result<Option<Vec<f64>>, I
     let other = formula(text, None)?;
     let mut values: Vec<f64> = Vec::new();
     let bounds = made.bounds;
-    let n = 2 * PLACES;
+    let n = 2 * places(&made.formula);
     let cell = (0..3)
         .map(|a| (bounds.max[a] - bounds.min[a]) / n as f64)
         .fold(0.0, f64::max);

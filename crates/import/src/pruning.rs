@@ -182,8 +182,11 @@ def bevelled_box(sides, corners, top, bottom, room):
         e = top if p.y > 0 else bottom
         s = vec2(section + e, abs(p.y) - y + e)
         return min(max(s.x, s.y), 0) + length(max(s, 0)) - e
+    size = [s + room for s in sides]
+    if max(corners) == min(corners) and top == bottom:
+        return field(distance_at, size = size)
     # the corners meet where they differ, so that its slope is known and not proven
-    return field(distance_at, size = [s + room for s in sides], slope = 1)
+    return field(distance_at, size = size, slope = 1)
 "#;
 
 fn widest(value: &Value) -> f64 {

@@ -70,6 +70,18 @@ fn values() {
     }
 }
 
+/// A choice between tuples is made item by item: a distance and a point stay those, in a tuple of up to four items too.
+#[test]
+fn tuples_are_chosen_item_by_item() {
+    for (p, wanted) in [([0.5, 2.0, 3.0], 0.5 + 3.0), ([-0.5, 2.0, 3.0], 1.5 - 2.0)] {
+        let nested =
+            "lambda p: [d + q[2] for d, q in [(p.x, p) if p.x > 0 else (1 - p.x, -p.zxy)]][0]";
+        assert_eq!(at(nested, p), wanted);
+        let two = "lambda p: [a[1] + b[0] for a, b in [(p.zz, p.xy) if p.x > 0 else (-p.yy, (1 - p.x, 0))]][0]";
+        assert_eq!(at(two, p), wanted);
+    }
+}
+
 #[test]
 fn slopes() {
     let loaded =
