@@ -9,7 +9,7 @@ use zeroset_catalogue::bounds::Exactness;
 use zeroset_cells::Cells;
 use zeroset_eval::Point;
 use zeroset_field::program::Program;
-use zeroset_number::{Dual, F64, Interval, Vec3, v3};
+use zeroset_number::{Dual, F64, Interval, Slope, Vec3, v3};
 
 /// A ray.
 #[derive(Clone, Copy, Debug)]
@@ -77,7 +77,7 @@ pub(crate) struct Isolation<'p> {
     program: &'p Program,
     cells: Option<&'p Cells>,
     ranges: Point<'p, Interval>,
-    slopes: Point<'p, Dual<Interval>>,
+    slopes: Point<'p, Slope>,
     values: Point<'p, F64>,
     gradients: Point<'p, Dual<F64>>,
     /// Whether the value changes by at most 1 per unit.
@@ -175,7 +175,8 @@ impl<'p> Isolation<'p> {
         }
         // f(t) >= f(from) + low (t - from) and f(t) >= f(to) - high (to - t)
         self.evaluations += 1;
-        let d = self.slopes.value(Dual::point(part)).d;
+        // endless where the value may jump, which ranges of derivatives alone do not say
+        let d = self.slopes.value(Slope::point(part)).d;
         let mut along = Interval::point(0.0);
         for (slope, direction) in d.iter().zip(line.direction) {
             along = along + *slope * Interval::point(f64::from(direction));

@@ -132,13 +132,15 @@ fn compare(scene: &Scene, film: &Film, value: impl Fn([f64; 3]) -> f64) -> (u32,
         const STEP: f64 = 1.0 / 2048.0;
         let first = (0..).map(|k| 1.0 + f64::from(k) * STEP);
         let first = first.take_while(|t| *t < 8.0).find(|t| behind(*t));
-        // what single precision and the width of a pixel leave open
+        // what single precision leaves open, and bodies thinner than a sixteenth of a pixel's width, which may be passed (ARCHITECTURE.md)
         let near = |t: f64| {
-            (-30..=30).any(|k| behind(t + f64::from(k) * 1e-4))
-                && (-30..=30).any(|k| !behind(t + f64::from(k) * 1e-4))
+            let around = |k: i32| behind(t + f64::from(k) * 1e-5);
+            (-200..=200).any(around) && !(-200..=200).all(around)
         };
+        let is_thin = |t: f64| (1..=10).any(|k| !behind(t + f64::from(k) * 5e-4));
         let is_right = match first {
-            Some(t) => is_hit && (f64::from(found) - t).abs() < 3e-3,
+            Some(t) if is_hit && f64::from(found) < t => near(f64::from(found)),
+            Some(t) => (is_hit && f64::from(found) < t + 3e-3) || is_thin(t),
             None => !is_hit || near(f64::from(found)),
         };
         hits += u32::from(is_hit && is_right);
@@ -149,6 +151,7 @@ fn compare(scene: &Scene, film: &Film, value: impl Fn([f64; 3]) -> f64) -> (u32,
 
 #[test]
 fn surfaces_are_where_mathematics_says() {
+    let mut lost_in_all = 0;
     for case in &CASES {
         let bounds = Aabb::centred([HALF; 3]);
         let formula = Formula::new(steps(case.formula), bounds, &Budget::default()).unwrap();
@@ -159,7 +162,7 @@ fn surfaces_are_where_mathematics_says() {
         let (wrong, hits) = compare(&scene, &film, case.value);
         // a ray that grazes an edge may pass it by a hair
         assert!(
-            wrong <= 4 && hits > 150,
+            wrong <= 1 && hits > 150,
             "{}: {wrong} wrong, {hits} right",
             case.name
         );
@@ -177,7 +180,7 @@ fn surfaces_are_where_mathematics_says() {
                 case.name
             );
         }
-        // and the comparison can fail: marched as if the usual slope held everywhere, most of them lose parts
+        // and the comparison can fail: marched as if the usual slope held everywhere, they lose parts
         let stated = Formula::stated(steps(case.formula), bounds, usual).unwrap();
         let stated = self::scene(Field::formula(Arc::new(stated)).unwrap());
         let (lost, _) = compare(&stated, &picture(&prepared(&stated, 2)), case.value);
@@ -185,7 +188,9 @@ fn surfaces_are_where_mathematics_says() {
             "{}: {wrong} wrong of {hits}; {lost} with the slope {usual}",
             case.name
         );
+        lost_in_all += lost;
     }
+    assert!(lost_in_all > 500, "{lost_in_all} pixels lost in all");
 }
 
 #[test]
