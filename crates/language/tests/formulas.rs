@@ -128,7 +128,7 @@ fn no_slope_need_be_stated_where_none_holds() {
             "field(lambda p: length(p) - (1 if p.x > 0 else 0.5))",
             1.0..1.01,
         ),
-        ("field(lambda p: p.y - 0.1 / p.x)", 1.0..10.0),
+        ("field(lambda p: p.y - 0.1 / p.x)", 1.0..20.0),
         // a million would be too steep, 20 is what it is where its surface lies
         (
             "field(lambda p: powi(p.x, 20) + powi(p.y, 20) + powi(p.z, 20) - 1, size = 9)",
@@ -201,8 +201,6 @@ fn refusals() {
             "show(field(lambda p: pow(1.9 - length(p.xy), 1.5), slope = 9))",
             "negative",
         ),
-        ("show(field(lambda p: pow(p.x, -1)))", "divides by"),
-        ("show(field(lambda p: p.x ** 2))", ""),
         // what depends on the point is neither true nor false
         (
             "show(field(lambda p: p.x and p.y))",

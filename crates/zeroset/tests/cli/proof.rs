@@ -52,7 +52,7 @@ fn a_picture_is_certified() {
 #[test]
 fn a_formula_without_a_slope_is_checked_and_certified() {
     let folder = Folder::with(
-        "show(field(lambda p: sqrt(abs(p.x)) + sqrt(abs(p.y)) + sqrt(abs(p.z)) - 1.2), name = \"star\")\n\
+        "show(field(lambda p: length(p) - 1.2 + 0.2 * sqrt(abs(p.x))), name = \"star\")\n\
          camera(eye = (2, 1.5, 3), target = (0, 0, 0), fov = 40)\n",
     );
     let said = folder.good("check scene.star").out;
