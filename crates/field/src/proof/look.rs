@@ -39,34 +39,62 @@ pub(crate) fn sample(tape: &ProofTape, bounds: &Aabb) -> (f64, [f64; 3]) {
     steepest
 }
 
-/// How long the gradient is near the surface: the median over places of the box next to which the surface lies, as far as a line along the
-/// gradient tells, or over all places where there are none.
+/// How long the gradient is on the surface: the median over places where lines between the nodes of a grid pass it, or over all nodes where none
+/// does. Jumps and poles are no such places.
 pub(crate) fn usual(tape: &ProofTape, bounds: &Aabb) -> f64 {
     const LOOKS: f64 = 4e5;
+    /// Halvings of what is between two nodes.
+    const HALVINGS: u32 = 12;
     let side = ((LOOKS / tape.steps().len() as f64).cbrt() as usize).clamp(4, 24);
     let last = tape.steps().len() - 1;
-    // half of what is between two places, along the axes that count
-    let cell = (0..3).filter(|&k| tape.reaches(last, k));
-    let cell = cell.map(|k| (bounds.max[k] - bounds.min[k]) / side as f64);
-    let near = 0.5 * cell.map(|c| c * c).sum::<f64>().sqrt();
-    let (mut duals, mut beside, mut all) = (Vec::new(), Vec::new(), Vec::new());
-    for i in 0..side * side * side {
-        let index = [i % side, i / side % side, i / side / side];
-        let [x, y, z] = std::array::from_fn(|k| {
+    let (mut values, mut duals) = (Vec::new(), Vec::new());
+    let mut value = |[x, y, z]: [f64; 3]| tape.eval(v3(F64(x), F64(y), F64(z)), &mut values).0;
+    let place = |index: [usize; 3]| -> [f64; 3] {
+        std::array::from_fn(|k| {
             let t = (index[k] as f64 + 0.43) / side as f64;
             bounds.min[k] + t * (bounds.max[k] - bounds.min[k])
-        });
-        let Dual { v, d } = tape.eval(Dual::point(v3(F64(x), F64(y), F64(z))), &mut duals);
-        let length = d.iter().map(|d| d.0 * d.0).sum::<f64>().sqrt();
-        if !(v.0.is_finite() && length.is_finite() && length > 0.0) {
-            continue;
-        }
-        all.push(length);
-        if v.0.abs() < length * near {
-            beside.push(length);
+        })
+    };
+    let nodes = (0..side * side * side).map(|i| [i % side, i / side % side, i / side / side]);
+    let nodes: Vec<[usize; 3]> = nodes.collect();
+    let found: Vec<f64> = nodes.iter().map(|index| value(place(*index))).collect();
+    let mut lengths = Vec::new();
+    for (i, index) in nodes.iter().enumerate() {
+        for (axis, apart) in [1, side, side * side].into_iter().enumerate() {
+            if index[axis] + 1 == side || !tape.reaches(last, axis) {
+                continue;
+            }
+            let behind = found[i] < 0.0;
+            if behind == (found[i + apart] < 0.0) {
+                continue;
+            }
+            let mut beyond = *index;
+            beyond[axis] += 1;
+            let (mut from, mut to) = (place(*index), place(beyond));
+            for _ in 0..HALVINGS {
+                let middle: [f64; 3] = std::array::from_fn(|k| 0.5 * (from[k] + to[k]));
+                if (value(middle) < 0.0) == behind {
+                    from = middle;
+                } else {
+                    to = middle;
+                }
+            }
+            // a jump is no smaller between places that are nearer, and a pole is larger
+            let jump = (value(from) - value(to)).abs();
+            if jump < 0.1 * (found[i] - found[i + apart]).abs() {
+                lengths.push(gradient(tape, from, &mut duals));
+            }
         }
     }
-    let mut lengths = if beside.is_empty() { all } else { beside };
+    if lengths.is_empty() {
+        lengths.extend(
+            nodes
+                .iter()
+                .map(|index| gradient(tape, place(*index), &mut duals)),
+        );
+    }
+    // where it has none
+    lengths.retain(|length| *length > 0.0);
     lengths.sort_by(f64::total_cmp);
     lengths.get(lengths.len() / 2).copied().unwrap_or(1.0)
 }
