@@ -424,7 +424,7 @@ impl Formula {
         self.bounds
     }
 
-    /// Lipschitz constant inside the box, if it has a [`Ground`]; no less than 1.
+    /// Lipschitz constant inside the box, no less than 1; where there is none ([`Ground::Usual`]), a usual slope near the surface.
     pub fn slope(&self) -> f64 {
         self.slope
     }
