@@ -8,6 +8,8 @@ mod write;
 use naga::front::glsl::{Error as NagaError, ErrorKind, Frontend, Options as NagaOptions};
 use naga::{Function, Handle, Module, ShaderStage, Span, TypeInner};
 use std::ops::Range;
+use std::sync::mpsc;
+use std::time::Duration;
 use translate::{Time, Translator};
 
 /// Names of functions that give the distance, in the order in which they are looked for.
@@ -106,6 +108,10 @@ const DEEPEST: usize = 256;
 /// Bytes of the stack on which so much can be parsed: the parser calls itself for every bracket, sign and `else`.
 const STACK: usize = 1 << 30;
 
+/// How long the parser may take. It expands macros without a limit, and nothing ends it but the end of the program: what comes too late is
+/// left alone.
+const PATIENCE: Duration = Duration::from_secs(5);
+
 /// Translates the function of this name, or the first that has one of [`NAMES`].
 ///
 /// # Errors
@@ -121,22 +127,32 @@ pub fn translate(text: &str, function: Option<&str>) -> Result<Functions, GlslEr
             ..GlslError::new(format!("this is nested more than {DEEPEST} deep"))
         });
     }
-    std::thread::scope(|scope| {
-        let work = || translated(text, function);
-        let thread = std::thread::Builder::new()
-            .stack_size(STACK)
-            .spawn_scoped(scope, work);
-        match thread.map(std::thread::ScopedJoinHandle::join) {
-            Ok(Ok(result)) => result,
+    let (done, result) = mpsc::channel();
+    let (text, function) = (text.to_owned(), function.map(str::to_owned));
+    let work = move || {
+        // who has waited too long does not hear it
+        let _ = done.send(translated(&text, function.as_deref()));
+    };
+    let thread = std::thread::Builder::new().stack_size(STACK).spawn(work);
+    if let Err(error) = thread {
+        let message = format!("there is no room to parse it: {error}");
+        return Err(GlslError::new(message));
+    }
+    result
+        .recv_timeout(PATIENCE)
+        .unwrap_or_else(|ended| match ended {
+            mpsc::RecvTimeoutError::Timeout => Err(GlslError {
+                help: Some("write out macros that name others more than once".to_owned()),
+                ..GlslError::new(format!(
+                    "it takes longer than {} s to parse, as macros do that grow with each other",
+                    PATIENCE.as_secs()
+                ))
+            }),
             // the parser is not ours, and breaks down for some texts that are no GLSL
-            Ok(Err(_)) => Err(GlslError::new(
+            mpsc::RecvTimeoutError::Disconnected => Err(GlslError::new(
                 "the parser broke down: the shader is wrong in a way that it does not tell",
             )),
-            Err(error) => Err(GlslError::new(format!(
-                "there is no room to parse it: {error}"
-            ))),
-        }
-    })
+        })
 }
 
 fn translated(text: &str, function: Option<&str>) -> Result<Functions, GlslError> {

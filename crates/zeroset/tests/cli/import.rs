@@ -109,3 +109,22 @@ fn a_shader_needs_a_feature() {
     );
     folder.bad("import shader.glsl", 2, &["--features shaders"]);
 }
+
+/// Macros that name the next one twice: 2^40 numbers.
+#[cfg(feature = "shaders")]
+#[test]
+fn macros_that_grow_without_end_are_given_up() {
+    let folder = Folder::empty();
+    let macros: String = (0..40)
+        .map(|k| format!("#define A{k} A{0} + A{0}\n", k + 1))
+        .collect();
+    let text =
+        format!("{macros}#define A40 1.0\nfloat map(vec3 p) {{ return length(p) - (A0); }}\n");
+    folder.write("grows.glsl", text);
+    folder.bad(
+        "import grows.glsl -o grows.star",
+        3,
+        &["longer than 5 s", "macros"],
+    );
+    assert!(!folder.path("grows.star").exists());
+}
