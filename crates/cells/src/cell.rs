@@ -108,18 +108,6 @@ impl Cell {
             && (p[2] >= self.min[2] && p[2] < self.max[2])
     }
 
-    /// Whether it holds a point of more precise numbers.
-    pub(crate) fn holds_near(&self, p: [f64; 3]) -> bool {
-        (0..3).all(|k| f64::from(self.min[k]) <= p[k] && p[k] <= f64::from(self.max[k]))
-    }
-
-    /// The part around such a point of it, if somebody has made it.
-    pub(crate) fn part_near(&self, p: [f64; 3]) -> Option<&Cell> {
-        let parts = self.parts.as_ref()?;
-        let bit = |k: usize| usize::from(p[k] >= f64::from(self.centre[k])) << k;
-        parts[bit(0) | bit(1) | bit(2)].cell.get()?.as_deref()
-    }
-
     /// Whether the part around a point of it is not made yet, and not to be made after `points` points, so that it is the cell of this
     /// point too.
     #[inline]

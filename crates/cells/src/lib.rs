@@ -232,18 +232,6 @@ impl Cells {
         self.tape(self.find(p, Side::Values).values())
     }
 
-    /// As [`Cells::tape_at`], at a point of more precise numbers; no cell is made for it.
-    pub fn tape_near(&self, p: [f64; 3]) -> Tape<'_> {
-        let mut cell = &self.root;
-        if !cell.holds_near(p) {
-            return self.program.values();
-        }
-        while let Some(part) = cell.part_near(p) {
-            cell = part;
-        }
-        self.tape(cell.values())
-    }
-
     /// The tape that gives the program's marks around a point.
     pub fn marks_at(&self, p: [f32; 3]) -> Tape<'_> {
         self.tape(self.marks_of(self.find(p, Side::Marks)))

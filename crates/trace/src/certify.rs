@@ -137,7 +137,7 @@ impl<'a> Prover<'a> {
         Prover {
             scene,
             view,
-            isolation: Isolation::new(scene.program.marched(), None),
+            isolation: Isolation::new(scene.program.marched()),
         }
     }
 

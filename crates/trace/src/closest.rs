@@ -226,7 +226,7 @@ fn search(select: bool, solid: &Solid<'_>, exhausted: &[Exhausted], hits: &mut H
         return 0;
     }
     let mut evaluations = 0;
-    let mut isolation = Isolation::new(solid.program.marched(), solid.cells);
+    let mut isolation = Isolation::new(solid.program.marched());
     for at in exhausted {
         let line = Line {
             origin: at.ray.origin.array(),

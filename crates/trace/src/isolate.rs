@@ -3,16 +3,18 @@
 //!
 //! A part of the ray over which the field's range is above zero holds no surface, whatever its length; the others are halved,
 //! near ones first (Mitchell 1990). The values at its ends help: with the slope of a field that is a bound, or with the range
-//! of its derivative along the ray, which needs fewer and fewer parts the shorter they are.
+//! of its derivative along the ray, which needs fewer and fewer parts the shorter they are. What the field is far from in a part is left out
+//! in the parts of that one.
 
 use zeroset_catalogue::bounds::Exactness;
-use zeroset_cells::Cells;
-use zeroset_eval::Point;
+use zeroset_catalogue::tape::{Code, Tape};
+use zeroset_cells::can_be_pruned;
+use zeroset_eval::{Point, PointNumber, Pruner};
 use zeroset_field::program::Program;
-use zeroset_number::{Dual, F64, Interval, Slope, Vec3, v3};
+use zeroset_number::{Dual, F64, Interval, SingleInterval, Slope, Vec3, v3};
 
 /// A ray.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Line {
     pub(crate) origin: [f32; 3],
     pub(crate) direction: [f32; 3],
@@ -33,6 +35,16 @@ impl Line {
             Interval::new(a.x.0, b.x.0),
             Interval::new(a.y.0, b.y.0),
             Interval::new(a.z.0, b.z.0),
+        )
+    }
+
+    /// The same, for a tape in single precision.
+    fn single_part(&self, from: f64, to: f64) -> Vec3<SingleInterval> {
+        let (a, b) = (self.at(from), self.at(to));
+        v3(
+            SingleInterval::new(a.x.0, b.x.0),
+            SingleInterval::new(a.y.0, b.y.0),
+            SingleInterval::new(a.z.0, b.z.0),
         )
     }
 
@@ -60,8 +72,11 @@ pub(crate) enum Crossing {
 
 /// Evaluations in double precision are off by about this share of the coordinates.
 const ROUNDING: f64 = 1e-15;
-/// Instructions that a search may take.
+/// Instructions over ranges that a search may take, and parts that it may look at in any case.
 const WORK: usize = 400_000;
+const PARTS: usize = 64;
+/// Tapes of so few instructions are not made shorter.
+const SHORT: usize = 32;
 
 /// A part of a ray.
 #[derive(Clone, Copy)]
@@ -72,36 +87,89 @@ struct Segment {
     ends_behind: bool,
 }
 
+/// What is left of the program on a part of the ray.
+struct Remains {
+    from: f64,
+    to: f64,
+    code: Code,
+}
+
+/// What is left of a program where a ray is looked at.
+fn tape<'a>(program: &'a Program, left: &'a [Remains]) -> Tape<'a> {
+    let whole = program.values();
+    Tape {
+        code: left.last().map_or(whole.code, |left| &left.code),
+        data: whole.data,
+    }
+}
+
 /// A search's memory.
 pub(crate) struct Isolation<'p> {
     program: &'p Program,
-    cells: Option<&'p Cells>,
-    ranges: Point<'p, Interval>,
-    slopes: Point<'p, Slope>,
-    values: Point<'p, F64>,
-    gradients: Point<'p, Dual<F64>>,
+    /// The ray that is looked at, and what is left of the program on parts of it, each within the one before.
+    line: Option<Line>,
+    left: Vec<Remains>,
+    pruner: Pruner,
+    /// Whether what is left of the program in a box gives the same there.
+    prunes: bool,
     /// Whether the value changes by at most 1 per unit.
     bound: bool,
     /// Whether the value may jump.
     chaotic: bool,
     parts: Vec<Segment>,
     evaluations: u64,
+    /// Instructions that ranges took.
+    work: usize,
 }
 
 impl<'p> Isolation<'p> {
-    pub(crate) fn new(program: &'p Program, cells: Option<&'p Cells>) -> Self {
+    pub(crate) fn new(program: &'p Program) -> Self {
         Isolation {
             program,
-            cells,
-            ranges: Point::new(program.values()),
-            slopes: Point::new(program.values()),
-            values: Point::new(program.values()),
-            gradients: Point::new(program.values()),
+            line: None,
+            left: Vec::new(),
+            pruner: Pruner::new(),
+            prunes: can_be_pruned(program),
             bound: program.exactness() <= Exactness::Bound,
             chaotic: program.is_fractal(),
             parts: Vec::new(),
             evaluations: 0,
+            work: 0,
         }
+    }
+
+    /// Lets go of what is only known of parts of a ray that do not hold this one.
+    fn look_at(&mut self, line: &Line, from: f64, to: f64) {
+        if self.line != Some(*line) {
+            self.line = Some(*line);
+            self.left.clear();
+        }
+        while (self.left.last()).is_some_and(|left| from < left.from || left.to < to) {
+            self.left.pop();
+        }
+    }
+
+    fn evaluate<R: PointNumber>(&mut self, at: Vec3<R>) -> R {
+        self.evaluations += 1;
+        Point::new(tape(self.program, &self.left)).value(at)
+    }
+
+    /// Leaves out of the program what does not matter on a part of the ray. Returns the least value there, from the side that is followed, if
+    /// that was found on the way.
+    fn prune(&mut self, line: &Line, from: f64, to: f64) -> Option<f64> {
+        let tape = tape(self.program, &self.left);
+        let instructions = tape.code.instructions.len();
+        if !self.prunes || instructions <= SHORT {
+            return None;
+        }
+        let left = (self.pruner).prune(tape, line.single_part(from, to));
+        self.evaluations += 1;
+        self.work += instructions;
+        if let Some(code) = left.code {
+            self.left.push(Remains { from, to, code });
+        }
+        let range = left.range;
+        Some(if line.inside { -range.hi } else { range.lo }.into())
     }
 
     /// Whether the value may jump: ranges of it say nothing then.
@@ -126,14 +194,8 @@ impl<'p> Isolation<'p> {
 
     /// The value at `t`, from the side that is followed.
     pub(crate) fn value(&mut self, line: &Line, t: f64) -> f64 {
-        self.evaluations += 1;
-        let at = line.at(t);
-        // which cells there are makes no value another one, but it does ranges
-        let value = match self.cells {
-            Some(cells) => Point::<F64>::new(cells.tape_near(at.array().map(|c| c.0))).value(at),
-            None => self.values.value(at),
-        };
-        line.sided(value.0)
+        self.look_at(line, t, t);
+        line.sided(self.evaluate(line.at(t)).0)
     }
 
     /// The place between one that is not behind the surface and one that is.
@@ -155,9 +217,13 @@ impl<'p> Isolation<'p> {
     /// Whether the field is nowhere below `limit` on a part of the ray, as far as is easily seen: by its range over the box
     /// around it, by its slope where it is a bound, by the range of its derivative along the ray.
     pub(crate) fn is_clear(&mut self, line: &Line, from: f64, to: f64, limit: f64) -> bool {
-        self.evaluations += 1;
+        self.look_at(line, from, to);
+        if (self.prune(line, from, to)).is_some_and(|low| low >= limit) {
+            return true;
+        }
         let part = line.part(from, to);
-        let range = self.ranges.value(part);
+        self.work += tape(self.program, &self.left).code.instructions.len();
+        let range = self.evaluate(part);
         let low = if line.inside { -range.hi } else { range.lo };
         if low >= limit {
             return true;
@@ -174,9 +240,8 @@ impl<'p> Isolation<'p> {
             return false;
         }
         // f(t) >= f(from) + low (t - from) and f(t) >= f(to) - high (to - t)
-        self.evaluations += 1;
         // endless where the value may jump, which ranges of derivatives alone do not say
-        let d = self.slopes.value(Slope::point(part)).d;
+        let d = self.evaluate(Slope::point(part)).d;
         let mut along = Interval::point(0.0);
         for (slope, direction) in d.iter().zip(line.direction) {
             along = along + *slope * Interval::point(f64::from(direction));
@@ -205,8 +270,8 @@ impl<'p> Isolation<'p> {
 
     /// The length of the gradient at `t`.
     pub(crate) fn slope(&mut self, line: &Line, t: f64) -> f64 {
-        self.evaluations += 1;
-        let f = (self.gradients).value(Dual::point(line.at(t)));
+        self.look_at(line, t, t);
+        let f = self.evaluate(Dual::point(line.at(t)));
         f.d.iter().map(|d| d.0 * d.0).sum::<f64>().sqrt()
     }
 
@@ -214,8 +279,7 @@ impl<'p> Isolation<'p> {
     /// `least`.
     pub(crate) fn first(&mut self, line: &Line, start: f32, end: f32, least: f32) -> Crossing {
         let behind = |t: f64| -ROUNDING * line.size(t);
-        let instructions = self.program.structure().values.instructions.len();
-        let most = (WORK / instructions.max(1)).max(64);
+        self.work = 0;
         let end = f64::from(end.min(f32::MAX));
         self.parts.clear();
         self.parts.push(Segment {
@@ -231,7 +295,7 @@ impl<'p> Isolation<'p> {
         }) = self.parts.pop()
         {
             looked += 1;
-            if looked > most {
+            if looked > PARTS && self.work > WORK {
                 return Crossing::Unknown(from as f32);
             }
             if !ends_behind && self.is_clear(line, from, to, behind(from).max(behind(to))) {
