@@ -1,10 +1,10 @@
 //! The text of an expression.
 
+use super::store::{part, tuple};
 use super::translate::{
     AND, ATOM, CHOICE, COMPARED, NOT, OR, PRODUCT, Result, SIGN, SUM, Text, Time, Translator,
     Writer, atom, bound, modulo, number, single,
 };
-use super::write::{part, tuple};
 use naga::{
     BinaryOperator as B, Expression as E, Function, Handle, Literal, MathFunction as M,
     RelationalFunction, ScalarKind, Span, SwizzleComponent, Type, TypeInner, UnaryOperator,
@@ -70,17 +70,22 @@ impl<'m> Translator<'m> {
         }
     }
 
+    /// Gives the value of an expression a name, on a line of its own.
+    fn named(w: &mut Writer<'m>, h: Handle<E>, text: &Text) -> Text {
+        let name = w.fresh("t");
+        w.line(format!("{name} = {}", text.text));
+        w.cache.insert(h, atom(name.clone()));
+        w.pending.retain(|(p, _)| *p != h);
+        atom(name)
+    }
+
     /// The text of an expression that may be repeated.
     fn simple(&mut self, w: &mut Writer<'m>, h: Handle<E>) -> Result<Text> {
         let text = self.text(w, h)?;
         if text.is_simple() || matches!(w.function.expressions[h], E::Literal(_)) {
             return Ok(text);
         }
-        let name = w.fresh("t");
-        w.line(format!("{name} = {}", text.text));
-        w.cache.insert(h, atom(name.clone()));
-        w.pending.retain(|(p, _)| *p != h);
-        Ok(atom(name))
+        Ok(Self::named(w, h, &text))
     }
 
     /// A vector as an operand: what is the same in all parts as a number.
@@ -186,11 +191,7 @@ impl<'m> Translator<'m> {
             return Ok(text);
         }
         // a line that nobody can read, and that nests deeper than a scene may
-        let name = w.fresh("t");
-        w.line(format!("{name} = {}", text.text));
-        w.cache.insert(h, atom(name.clone()));
-        w.pending.retain(|(p, _)| *p != h);
-        Ok(atom(name))
+        Ok(Self::named(w, h, &text))
     }
 
     fn expression(&mut self, w: &mut Writer<'m>, h: Handle<E>) -> Result<Text> {

@@ -1,7 +1,10 @@
 //! GLSL as it is written for Shadertoy: a function that gives the distance at a point.
 
 mod expression;
+mod loops;
 mod slice;
+mod store;
+mod times;
 mod translate;
 mod write;
 
