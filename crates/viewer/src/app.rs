@@ -2,7 +2,7 @@
 
 use crate::engine::{Engine, Event};
 use crate::launch::Open;
-use crate::loader::Loader;
+use crate::loader::{Loader, Written};
 use crate::panel;
 use crate::panel::set_comparison;
 use crate::rig::Side;
@@ -10,19 +10,27 @@ use crate::save;
 use crate::session::Session;
 use crate::stage::{Stage, cards, flight};
 use crate::style::{self, GAP, PANEL, Palette};
-use crate::widget::section;
+use crate::widget::{section, switch};
 use eframe::egui::{
     Align2, Button, CentralPanel, Context, Frame, Id, Key, Margin, Modal, Modifiers, Panel,
-    RichText, ScrollArea, TextEdit, Theme, Ui,
+    RichText, ScrollArea, TextEdit, Theme, Ui, ViewportCommand,
 };
 use glam::DVec3;
 use std::time::{Duration, Instant};
 use zeroset_output::display::{LINE, NAME, name};
+
+/// Characters of a reason why something is not written.
+const LINES: usize = 600;
 use zeroset_scene::film::Plane;
 use zeroset_scene::methods::Choice;
 
 /// How long a note is shown.
 const NOTE: Duration = Duration::from_secs(5);
+
+/// The share of the window's width that the panel takes at most, and its width in any window, points.
+const SHARE: f32 = 0.42;
+const NARROWEST: f32 = 190.0;
+const WIDEST: f32 = 520.0;
 
 /// The window.
 pub struct App {
@@ -37,6 +45,8 @@ pub struct App {
     saving: Option<Saving>,
     /// What was done, and when it was said.
     note: Option<(String, Instant)>,
+    /// What could not be written into the file, line by line.
+    unwritten: Vec<String>,
 }
 
 /// A picture that is to be saved.
@@ -60,6 +70,7 @@ impl App {
             is_help_open: false,
             saving: None,
             note: None,
+            unwritten: Vec::new(),
         }
     }
 
@@ -96,6 +107,9 @@ impl App {
             }
         }
         let (mut has_news, mut said) = (false, None);
+        if let Some(written) = self.loader.as_ref().and_then(Loader::take_written) {
+            said = self.confirm(written);
+        }
         if let Some(engine) = &self.engine {
             while let Some(event) = engine.take() {
                 match event {
@@ -120,6 +134,55 @@ impl App {
         }
         if has_news {
             self.stage.load(ctx, &self.session);
+        }
+    }
+
+    /// Asks for what was changed to be put into the scene's file.
+    fn write(&mut self) {
+        if !self.session.is_unwritten() {
+            self.tell("The file says all of this already.");
+        } else if let Some(loader) = &self.loader {
+            let changes = self.session.changes();
+            loader.write(self.session.options.clone(), changes);
+        }
+    }
+
+    /// What to say of values that were written; what was not is shown until it is closed.
+    fn confirm(&mut self, written: Written) -> Option<String> {
+        let revision = match written {
+            Ok(revision) => revision,
+            Err(reason) => {
+                self.unwritten = vec![reason];
+                return None;
+            }
+        };
+        self.unwritten = revision.left.iter().map(ToString::to_string).collect();
+        let file = self.session.path.file_name().unwrap_or_default();
+        (!revision.written.is_empty()).then(|| {
+            let what = revision.written.join(", ");
+            format!("Written to {}: {what}", file.to_string_lossy())
+        })
+    }
+
+    /// What could not be written, and why.
+    fn say_unwritten(&mut self, ctx: &Context) {
+        if self.unwritten.is_empty() {
+            return;
+        }
+        let frame = Frame::popup(&ctx.global_style()).inner_margin(Margin::same(18));
+        let modal = Modal::new(Id::unique("unwritten")).frame(frame);
+        let modal = modal.show(ctx, |ui| {
+            ui.set_max_width(460.0);
+            ui.heading("Not written");
+            ui.weak("These stay as they are in the window, and the file as it was:");
+            for line in &self.unwritten {
+                ui.label(name(line, LINES));
+            }
+            ui.add_space(6.0);
+            ui.button("Close").clicked()
+        });
+        if modal.inner || modal.should_close() {
+            self.unwritten.clear();
         }
     }
 
@@ -157,10 +220,12 @@ impl App {
                 .show(ui, |ui| panel::timeline(ui, &mut self.session));
         }
         if self.is_panel_open {
+            // the picture keeps more than half of a small window
+            let most = (SHARE * ui.available_width()).clamp(NARROWEST, WIDEST);
             Panel::right("panel")
                 .frame(side)
-                .default_size(PANEL)
-                .size_range(PANEL..=520.0)
+                .default_size(PANEL.min(most))
+                .size_range(PANEL.min(most)..=most)
                 .show(ui, |ui| self.side(ui));
         }
         CentralPanel::default()
@@ -173,6 +238,7 @@ impl App {
         }
         panel::help(&ctx, &mut self.is_help_open);
         self.save_dialog(&ctx);
+        self.say_unwritten(&ctx);
         self.say(&ctx);
         self.ask(&ctx);
         if self.session.clock.is_playing {
@@ -213,6 +279,11 @@ impl App {
             .on_hover_text("A plane through the field (X).");
         ui.toggle_value(&mut self.session.converge, "Converge")
             .on_hover_text("Goes on until there is little noise (N).");
+        let write = ui.add_enabled(self.session.is_unwritten(), Button::new("Write to file"));
+        let about = "Puts what was changed here (parameters, camera, sun, sky, materials) into the scene's file; all else in it stays as it is (Ctrl+Shift+S).";
+        if write.on_hover_text(about).clicked() {
+            self.write();
+        }
         let save = ui
             .button("Save…")
             .on_hover_text("Saves the picture (Ctrl+S).");
@@ -220,11 +291,13 @@ impl App {
             self.ask_for_name();
         }
         let (word, theme) = if ui.visuals().dark_mode {
-            ("Light", Theme::Light)
+            ("Theme: dark", Theme::Light)
         } else {
-            ("Dark", Theme::Dark)
+            ("Theme: light", Theme::Dark)
         };
-        let other = ui.button(word).on_hover_text("The other theme.");
+        let other = ui
+            .button(word)
+            .on_hover_text("Changes between a dark and a light window.");
         if other.accessible_name("Change the theme").clicked() {
             ui.ctx().set_theme(theme);
         }
@@ -253,9 +326,18 @@ impl App {
                     panel::parameters(ui, session)
                 });
             }
-            section(ui, "View", true, |ui| panel::view(ui, session));
-            panel::methods(ui, session);
-            ui.separator();
+            section(ui, "Camera", true, |ui| panel::camera(ui, session, size));
+            section(ui, "Sun", true, |ui| panel::sun(ui, session));
+            section(ui, "Sky", false, |ui| panel::sky(ui, session));
+            section(ui, "Material", true, |ui| panel::material(ui, session));
+            section(ui, "Objects", false, |ui| panel::objects(ui, session));
+            section(ui, "View", true, |ui| {
+                panel::view(ui, session);
+                let about = "The ground as a grid, and the axes (G).";
+                switch(ui, "Grid", about, &mut session.has_grid);
+                panel::presets(ui, session);
+            });
+            section(ui, "Methods", false, |ui| panel::methods(ui, session));
             let said = session.current.as_ref().map(|c| {
                 let warnings = c.loaded.warnings.iter().map(|w| format!("warning: {w}"));
                 warnings.chain(c.loaded.log.iter().cloned()).collect()
@@ -264,7 +346,6 @@ impl App {
             if !log.is_empty() {
                 section(ui, "Printed by the scene", true, |ui| panel::log(ui, &log));
             }
-            section(ui, "Camera", false, |ui| panel::camera(ui, session, size));
         });
     }
 
@@ -296,8 +377,15 @@ impl App {
             ctx.copy_text(self.session.rig.statement());
             self.tell("The camera is on the clipboard.");
         }
+        if pressed(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S) {
+            self.write();
+        }
         if pressed(Modifiers::COMMAND, Key::S) {
             self.ask_for_name();
+        }
+        if pressed(none, Key::F11) {
+            let is_full = ctx.input(|i| i.viewport().fullscreen.unwrap_or(false));
+            ctx.send_viewport_cmd(ViewportCommand::Fullscreen(!is_full));
         }
         if self.saving.is_some() || ctx.text_edit_focused() {
             return;
@@ -334,6 +422,12 @@ impl App {
         }
         if pressed(none, Key::X) {
             session.is_sliced = !session.is_sliced;
+        }
+        if pressed(none, Key::L) {
+            session.is_sun_held = !session.is_sun_held;
+        }
+        if pressed(none, Key::G) {
+            session.has_grid = !session.has_grid;
         }
         if pressed(none, Key::N) {
             session.converge = !session.converge;

@@ -11,6 +11,7 @@
 //! | [`converge`] | pictures that go on until there is little noise |
 //! | [`loader`] | the thread that loads the scene, and again on every save |
 //! | [`clock`] | the time of an animation |
+//! | [`preset`] | methods that go together |
 //! | [`slice`](mod@slice), [`pick`] | a plane through the field; what is under the cursor |
 //! | [`app`] | the window itself |
 //!
@@ -34,6 +35,7 @@ mod launch;
 pub mod loader;
 pub mod panel;
 pub mod pick;
+pub mod preset;
 pub mod rig;
 mod save;
 pub mod session;

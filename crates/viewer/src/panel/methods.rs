@@ -1,7 +1,8 @@
 //! The methods of the papers, side by side.
 
+use crate::preset::Preset;
 use crate::session::Session;
-use crate::widget::{aside, choose, choose_or, real, section, slide, switch, whole};
+use crate::widget::{aside, choose, choose_or, real, row, section, slide, switch, whole};
 use eframe::egui::{Slider, Ui};
 use zeroset_scene::settings::Settings;
 
@@ -11,6 +12,22 @@ pub fn view(ui: &mut Ui, session: &mut Session) {
     choose(ui, "Show", &mut look.plane);
     real(ui, &Settings::EXPOSURE, &mut look.settings.exposure);
     choose(ui, "Tone curve", &mut look.settings.tone);
+}
+
+/// Methods that go together, at a press.
+pub fn presets(ui: &mut Ui, session: &mut Session) {
+    let look = session.edited();
+    row(ui, "Quality", "Sets all methods at once.", |ui| {
+        for preset in Preset::ALL {
+            let mut settings = look.settings;
+            let shadow = preset.apply(&mut settings);
+            let is_on = (settings, shadow) == (look.settings, look.shadow);
+            let button = ui.selectable_label(is_on, preset.name());
+            if button.on_hover_text(preset.about()).clicked() {
+                (look.settings, look.shadow) = (settings, shadow);
+            }
+        }
+    });
 }
 
 /// Every method that the edited look can have.
