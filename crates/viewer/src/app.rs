@@ -6,7 +6,7 @@ use crate::loader::{Loader, Written};
 use crate::panel;
 use crate::panel::set_comparison;
 use crate::rig::Side;
-use crate::save;
+use crate::save::{self, Describe};
 use crate::session::Session;
 use crate::stage::{Stage, cards, flight};
 use crate::style::{self, GAP, PANEL, Palette};
@@ -16,6 +16,7 @@ use eframe::egui::{
     RichText, ScrollArea, TextEdit, Theme, Ui, ViewportCommand,
 };
 use glam::DVec3;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 use zeroset_output::display::{LINE, NAME, name};
 
@@ -24,13 +25,22 @@ const LINES: usize = 600;
 use zeroset_scene::film::Plane;
 use zeroset_scene::methods::Choice;
 
+/// Width and height that a picture may have, pixels.
+const SIDES: std::ops::RangeInclusive<u32> = 1..=16_384;
+
 /// How long a note is shown.
 const NOTE: Duration = Duration::from_secs(5);
+
+/// Where there is less room for the buttons at the top, they are in a menu, points.
+const WIDE: f32 = 640.0;
 
 /// The share of the window's width that the panel takes at most, and its width in any window, points.
 const SHARE: f32 = 0.42;
 const NARROWEST: f32 = 190.0;
 const WIDEST: f32 = 520.0;
+
+/// How often a picture in the making is asked how far it is.
+const PROGRESS: Duration = Duration::from_millis(250);
 
 /// The window.
 pub struct App {
@@ -45,6 +55,8 @@ pub struct App {
     saving: Option<Saving>,
     /// What was done, and when it was said.
     note: Option<(String, Instant)>,
+    /// What goes into a picture so that it can be made again.
+    describe: Option<Describe>,
     /// What could not be written into the file, line by line.
     unwritten: Vec<String>,
 }
@@ -53,8 +65,19 @@ pub struct App {
 struct Saving {
     /// The name of the file.
     name: String,
+    /// Its size in pixels, as it is written.
+    size: String,
     /// Whether it is saved as soon as the picture is finished.
     is_waiting: bool,
+}
+
+impl Saving {
+    /// The size that is meant, if it is one that a picture can have.
+    fn pixels(&self) -> Option<[u32; 2]> {
+        let (width, height) = self.size.trim().split_once(['x', 'X', '×'])?;
+        let side = |text: &str| text.trim().parse().ok().filter(|n| SIDES.contains(n));
+        Some([side(width)?, side(height)?])
+    }
 }
 
 impl App {
@@ -70,6 +93,7 @@ impl App {
             is_help_open: false,
             saving: None,
             note: None,
+            describe: None,
             unwritten: Vec::new(),
         }
     }
@@ -87,6 +111,7 @@ impl App {
         let loader = Loader::start(open.scene, open.options, open.explain, open.assets, wake())?;
         let engine = Engine::start(open.renderer, wake())?;
         Ok(App {
+            describe: Some(open.describe),
             engine: Some(engine),
             loader: Some(loader),
             ..App::new(ctx, session)
@@ -119,10 +144,19 @@ impl App {
                     }
                     Event::Failed(reason) => self.session.trouble = Some(reason),
                     Event::Shown(shown) => {
+                        let before = self.session.shown.as_ref();
+                        if before.is_none_or(|b| !Arc::ptr_eq(&b.request, &shown.request)) {
+                            self.session.pace.mark(Instant::now());
+                        }
                         self.session.shown = Some(shown);
                         has_news = true;
                     }
                 }
+            }
+            let is_busy = (self.session.shown.as_ref()).is_some_and(|shown| !shown.is_last);
+            self.session.progress = is_busy.then(|| engine.progress());
+            if is_busy {
+                ctx.request_repaint_after(PROGRESS);
             }
             if !engine.is_alive() && self.session.trouble.is_none() {
                 self.session.trouble =
@@ -188,7 +222,10 @@ impl App {
 
     /// Asks for the picture, if it is another one than before.
     fn ask(&mut self, ctx: &Context) {
-        let size = self.stage.pixels(ctx);
+        // a picture that is saved may have another size than the window
+        let saved = self.saving.as_ref().filter(|saving| saving.is_waiting);
+        let size = saved.and_then(Saving::pixels);
+        let size = size.unwrap_or_else(|| self.stage.pixels(ctx));
         if let (Some(engine), true) = (&self.engine, self.stage.rect.is_some())
             && let Some(request) = self.session.to_render(size)
         {
@@ -257,6 +294,14 @@ impl App {
                 .to_string_lossy();
             ui.label(RichText::new(name(&file, NAME)).small().weak())
                 .on_hover_text(name(&self.session.path.to_string_lossy(), LINE));
+            if ui.available_width() < WIDE {
+                ui.menu_button("Menu", |ui| self.buttons(ui))
+                    .response
+                    .on_hover_text("What the window can do.");
+                ui.toggle_value(&mut self.is_panel_open, "Panel")
+                    .on_hover_text("Shows or hides the panel (P).");
+                return;
+            }
             // at the right side, and yet from left to right, which is the order of the Tab key
             let id = Id::unique("width of the buttons");
             let width = ui.data(|d| d.get_temp(id)).unwrap_or(0.0);
@@ -288,7 +333,8 @@ impl App {
             .button("Save…")
             .on_hover_text("Saves the picture (Ctrl+S).");
         if save.clicked() {
-            self.ask_for_name();
+            let ctx = ui.ctx().clone();
+            self.ask_for_name(&ctx);
         }
         let (word, theme) = if ui.visuals().dark_mode {
             ("Theme: dark", Theme::Light)
@@ -381,7 +427,7 @@ impl App {
             self.write();
         }
         if pressed(Modifiers::COMMAND, Key::S) {
-            self.ask_for_name();
+            self.ask_for_name(ctx);
         }
         if pressed(none, Key::F11) {
             let is_full = ctx.input(|i| i.viewport().fullscreen.unwrap_or(false));
@@ -451,11 +497,18 @@ impl App {
         }
     }
 
+    /// The size of the picture on the screen, in words.
+    fn written_size(&self, ctx: &Context) -> String {
+        let [width, height] = self.stage.pixels(ctx);
+        format!("{width}x{height}")
+    }
+
     /// Asks what the picture is to be called. The time stands still meanwhile.
-    fn ask_for_name(&mut self) {
+    fn ask_for_name(&mut self, ctx: &Context) {
         self.session.clock.is_playing = false;
         self.saving = Some(Saving {
             name: save::default_name(&self.session),
+            size: self.written_size(ctx),
             is_waiting: false,
         });
     }
@@ -464,7 +517,13 @@ impl App {
         let Some(saving) = &mut self.saving else {
             return;
         };
-        let is_finished = self.session.is_finished();
+        let on_screen = self.stage.pixels(ctx);
+        let is_here = saving.pixels() == Some(on_screen);
+        let fits = saving.pixels().is_some_and(|[width, height]| {
+            u64::from(width) * u64::from(height) <= self.session.options.limits.pixels
+        });
+        let size = self.session.shown.as_ref().map(|s| s.request.size);
+        let is_finished = self.session.is_finished() && (is_here || size == saving.pixels());
         let (mut is_done, mut is_left) = (false, false);
         let frame = Frame::popup(&ctx.global_style()).inner_margin(Margin::same(18));
         let modal = Modal::new(Id::unique("save")).frame(frame).show(ctx, |ui| {
@@ -475,6 +534,21 @@ impl App {
             let edit = TextEdit::singleline(&mut saving.name).desired_width(f32::INFINITY);
             let edit = ui.add(edit).accessible_name("File name");
             let entered = edit.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
+            ui.add_space(2.0);
+            ui.horizontal(|ui| {
+                ui.label("Size");
+                let edit = TextEdit::singleline(&mut saving.size).desired_width(110.0);
+                ui.add_enabled(!saving.is_waiting, edit)
+                    .accessible_name("Size of the picture");
+                if fits {
+                    ui.weak("pixels");
+                } else {
+                    ui.colored_label(
+                        ui.visuals().error_fg_color,
+                        "as in 1920x1080, no larger than the limit `pixels`",
+                    );
+                }
+            });
             ui.add_space(8.0);
             ui.horizontal(|ui| {
                 let word = if is_finished {
@@ -482,9 +556,9 @@ impl App {
                 } else {
                     "Save when finished"
                 };
-                let save = ui.add_enabled(!saving.is_waiting, Button::new(word));
-                saving.is_waiting |= save.clicked() || entered;
-                if !is_finished {
+                let save = ui.add_enabled(fits && !saving.is_waiting, Button::new(word));
+                saving.is_waiting |= fits && (save.clicked() || entered);
+                if !is_finished && is_here {
                     is_done = ui.button("Save as it is").clicked();
                 }
                 is_left = ui.button("Cancel").clicked();
@@ -494,7 +568,7 @@ impl App {
             }
         });
         if is_done || (saving.is_waiting && is_finished) {
-            let said = match save::save(&self.session, &saving.name) {
+            let said = match save::save(&self.session, &saving.name, self.describe) {
                 Ok(path) => format!("Saved {}", path.display()),
                 Err(reason) => format!("Not saved: {reason}"),
             };

@@ -155,6 +155,11 @@ impl Rig {
         self.distance
     }
 
+    /// What orbits turn around: the way that is up.
+    pub fn up(&self) -> DVec3 {
+        self.up
+    }
+
     /// Turns around the pivot: `right` and `down` are how far the hand moved what is seen, radians.
     pub fn orbit(&mut self, right: f64, down: f64) {
         let pivot = self.pivot();

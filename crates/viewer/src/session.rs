@@ -3,6 +3,7 @@
 use crate::clock::Clock;
 use crate::engine::{Look, Request, Shown};
 use crate::loader::Outcome;
+use crate::pace::Pace;
 use crate::pick::Picked;
 use crate::rig::{Rig, widened};
 use crate::slice::Slice;
@@ -84,6 +85,10 @@ pub struct Session {
     pub picked: Option<Picked>,
     /// The picture that is shown.
     pub shown: Option<Box<Shown>>,
+    /// How fast pictures follow each other, where they do.
+    pub pace: Pace,
+    /// How much of the picture in the making is done, 0 to 1.
+    pub progress: Option<f32>,
     /// What renders.
     pub backend: Option<String>,
     /// How often the file was saved.
@@ -139,6 +144,8 @@ impl Session {
             is_sliced: false,
             picked: None,
             shown: None,
+            pace: Pace::default(),
+            progress: None,
             backend: None,
             edition: 0,
             stated,
@@ -408,6 +415,11 @@ impl Session {
             self.asked = self.options.clone();
             self.options.clone()
         })
+    }
+
+    /// Whether the scene is loaded with the parameters and the time that are set.
+    pub fn is_loaded(&self) -> bool {
+        self.options == self.asked
     }
 
     /// The settings that the file states.

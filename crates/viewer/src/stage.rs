@@ -1,5 +1,6 @@
 //! The picture, and what hands do on it.
 
+use crate::overlay;
 use crate::panel::{self, SunPlace};
 use crate::pick::{depth, pick};
 use crate::session::Session;
@@ -72,10 +73,13 @@ impl Stage {
         let palette = Palette::of(ui.visuals());
         ui.painter().rect_filled(rect, 0.0, palette.surround);
         self.paint(ui, session, rect);
+        let size = self.pixels(ui.ctx());
+        overlay::grid(ui, session, rect, size);
         let divided = session.comparison.is_on && divider(ui, session, rect);
         if !divided {
             self.hand(ui, session, &response, rect);
         }
+        overlay::gizmo(ui, session, rect);
         if session.shown.is_none() && session.trouble.is_none() {
             let middle = rect.center();
             let ink = ui.visuals().weak_text_color();

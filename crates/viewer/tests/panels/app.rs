@@ -195,7 +195,7 @@ fn keys_do_what_the_list_says() {
     assert!(harness.query_by_label("Keys and mouse").is_some());
     press(&mut harness, Key::Escape);
     press(&mut harness, Key::P);
-    assert!(harness.query_by_label("Marching").is_none());
+    assert!(harness.query_by_label("Methods").is_none());
     let before = harness.state().session().rig;
     harness.key_down(Key::W);
     harness.step();
@@ -291,12 +291,23 @@ fn tab_goes_through_every_control() {
         "Help",
         "Panel",
         "bite",
-        "March",
+        "Front",
+        "Azimuth",
+        "Exposure",
     ];
     assert!(order.is_sorted_by_key(|name| place(name)), "{seen:?}");
     let names: HashSet<&str> = seen.iter().map(|(_, name)| name.as_str()).collect();
     for name in [
-        "Compare", "Slice", "Save…", "Help", "bite", "style", "March", "Exposure", "Play",
+        "Compare",
+        "Slice",
+        "Save…",
+        "Help",
+        "bite",
+        "style",
+        "Elevation",
+        "Exposure",
+        "Good",
+        "Play",
     ] {
         assert!(names.contains(name), "{name} is not among {seen:?}");
     }

@@ -2,7 +2,7 @@
 
 mod again;
 mod animate;
-mod digest;
+pub(crate) mod digest;
 mod ffmpeg;
 mod job;
 mod limited;
