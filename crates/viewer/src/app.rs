@@ -3,6 +3,7 @@
 use crate::engine::{Engine, Event};
 use crate::launch::Open;
 use crate::loader::{Loader, Written};
+use crate::movie::{Animate, Movie, Progress};
 use crate::panel;
 use crate::panel::set_comparison;
 use crate::rig::Side;
@@ -13,10 +14,11 @@ use crate::style::{self, GAP, PANEL, Palette};
 use crate::widget::{section, switch};
 use eframe::egui::{
     Align2, Button, CentralPanel, Context, Frame, Id, Key, Margin, Modal, Modifiers, Panel,
-    RichText, ScrollArea, TextEdit, Theme, Ui, ViewportCommand,
+    ProgressBar, RichText, ScrollArea, TextEdit, Theme, Ui, ViewportCommand,
 };
 use glam::DVec3;
 use std::sync::Arc;
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::{Duration, Instant};
 use zeroset_output::display::{LINE, NAME, name};
 
@@ -24,6 +26,12 @@ use zeroset_output::display::{LINE, NAME, name};
 const LINES: usize = 600;
 use zeroset_scene::film::Plane;
 use zeroset_scene::methods::Choice;
+
+/// Stack of the thread that makes animations: a field is compiled as deep as it nests.
+const STACK: usize = 64 << 20;
+
+/// Endings of animations.
+const FILMS: [&str; 5] = ["gif", "apng", "mp4", "webm", "y4m"];
 
 /// Width and height that a picture may have, pixels.
 const SIDES: std::ops::RangeInclusive<u32> = 1..=16_384;
@@ -57,8 +65,19 @@ pub struct App {
     note: Option<(String, Instant)>,
     /// What goes into a picture so that it can be made again.
     describe: Option<Describe>,
+    /// What makes animations.
+    animate: Option<Animate>,
+    /// The animation that is being made.
+    film: Option<Film>,
     /// What could not be written into the file, line by line.
     unwritten: Vec<String>,
+}
+
+/// An animation that is being made, on a thread of its own.
+struct Film {
+    movie: Movie,
+    progress: Arc<Progress>,
+    end: Receiver<Result<(), String>>,
 }
 
 /// A picture that is to be saved.
@@ -69,6 +88,12 @@ struct Saving {
     size: String,
     /// Whether it is saved as soon as the picture is finished.
     is_waiting: bool,
+}
+
+/// Whether a name is that of an animation.
+fn is_film(name: &str) -> bool {
+    let ending = name.trim().rsplit_once('.').map(|(_, e)| e.to_lowercase());
+    ending.is_some_and(|e| FILMS.contains(&e.as_str()))
 }
 
 impl Saving {
@@ -94,6 +119,8 @@ impl App {
             saving: None,
             note: None,
             describe: None,
+            animate: None,
+            film: None,
             unwritten: Vec::new(),
         }
     }
@@ -112,6 +139,7 @@ impl App {
         let engine = Engine::start(open.renderer, wake())?;
         Ok(App {
             describe: Some(open.describe),
+            animate: Some(open.animate),
             engine: Some(engine),
             loader: Some(loader),
             ..App::new(ctx, session)
@@ -275,6 +303,7 @@ impl App {
         }
         panel::help(&ctx, &mut self.is_help_open);
         self.save_dialog(&ctx);
+        self.film_dialog(&ctx);
         self.say_unwritten(&ctx);
         self.say(&ctx);
         self.ask(&ctx);
@@ -524,12 +553,18 @@ impl App {
         });
         let size = self.session.shown.as_ref().map(|s| s.request.size);
         let is_finished = self.session.is_finished() && (is_here || size == saving.pixels());
+        let is_animated = self.session.is_animated() && self.animate.is_some();
+        let is_film = is_animated && is_film(&saving.name);
+        let is_finished = is_finished || is_film;
         let (mut is_done, mut is_left) = (false, false);
         let frame = Frame::popup(&ctx.global_style()).inner_margin(Margin::same(18));
         let modal = Modal::new(Id::unique("save")).frame(frame).show(ctx, |ui| {
             ui.set_width(420.0);
             ui.heading("Save the picture");
             ui.weak("The ending says how: .png, or .exr with all planes of the film.");
+            if is_animated {
+                ui.weak("All of the time line: .gif, .apng, or through ffmpeg .mp4 and .webm.");
+            }
             ui.add_space(6.0);
             let edit = TextEdit::singleline(&mut saving.name).desired_width(f32::INFINITY);
             let edit = ui.add(edit).accessible_name("File name");
@@ -567,7 +602,11 @@ impl App {
                 ui.weak("The picture is still being refined.");
             }
         });
-        if is_done || (saving.is_waiting && is_finished) {
+        if let (true, Some(size)) = (saving.is_waiting && is_film, saving.pixels()) {
+            let path = saving.name.trim().into();
+            self.saving = None;
+            self.shoot(ctx, Movie::of(&self.session, path, size));
+        } else if is_done || (saving.is_waiting && is_finished) {
             let said = match save::save(&self.session, &saving.name, self.describe) {
                 Ok(path) => format!("Saved {}", path.display()),
                 Err(reason) => format!("Not saved: {reason}"),
@@ -577,6 +616,77 @@ impl App {
         } else if is_left || modal.should_close() {
             self.saving = None;
         }
+    }
+
+    /// Makes an animation, beside the window.
+    fn shoot(&mut self, ctx: &Context, movie: Movie) {
+        let Some(animate) = self.animate else {
+            return;
+        };
+        let progress = Arc::new(Progress::default());
+        let (tell, end) = channel();
+        let (theirs, asked, ctx) = (Arc::clone(&progress), movie.clone(), ctx.clone());
+        let work = move || {
+            // a window that is gone needs no news
+            let _ = tell.send(animate(&asked, &theirs));
+            ctx.request_repaint();
+        };
+        let thread = std::thread::Builder::new()
+            .name("film".into())
+            .stack_size(STACK)
+            .spawn(work);
+        match thread {
+            Ok(_) => {
+                self.film = Some(Film {
+                    movie,
+                    progress,
+                    end,
+                });
+            }
+            Err(error) => self.tell(format!("No animation: {error}")),
+        }
+    }
+
+    /// Shows how far the animation is, and ends it where that is wanted.
+    fn film_dialog(&mut self, ctx: &Context) {
+        let Some(film) = &self.film else {
+            return;
+        };
+        let end = match film.end.try_recv() {
+            Ok(end) => Some(end),
+            Err(TryRecvError::Empty) => None,
+            Err(TryRecvError::Disconnected) => Some(Err(
+                "the renderer broke down; please report this scene as a bug".to_owned(),
+            )),
+        };
+        if let Some(end) = end {
+            let path = film.movie.path.display();
+            let said = match end {
+                Ok(()) => format!("Saved {path}"),
+                Err(_) if film.progress.is_cancelled() => "No animation: it was ended".to_owned(),
+                Err(reason) => format!("No animation: {reason}"),
+            };
+            self.film = None;
+            self.tell(said);
+            return;
+        }
+        let frame = Frame::popup(&ctx.global_style()).inner_margin(Margin::same(18));
+        Modal::new(Id::unique("film")).frame(frame).show(ctx, |ui| {
+            ui.set_width(360.0);
+            ui.heading("The animation is made");
+            let (done, all) = (film.progress.frames().saturating_sub(1), film.movie.frames);
+            let share = done as f32 / all.max(1) as f32;
+            ui.add(ProgressBar::new(share).text(format!("{done} of {all} frames")));
+            let word = if film.progress.is_cancelled() {
+                "Ending"
+            } else {
+                "Cancel"
+            };
+            if ui.button(word).clicked() {
+                film.progress.cancel();
+            }
+        });
+        ctx.request_repaint_after(PROGRESS);
     }
 
     fn tell(&mut self, text: impl Into<String>) {

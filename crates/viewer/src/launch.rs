@@ -3,6 +3,7 @@
 use crate::app::App;
 use crate::engine::MakeRenderer;
 use crate::loader::Explain;
+use crate::movie::Animate;
 use crate::save::Describe;
 use eframe::egui::{ViewportBuilder, vec2};
 use std::path::PathBuf;
@@ -22,6 +23,8 @@ pub struct Open {
     pub explain: Explain,
     /// What goes into a picture so that it can be made again.
     pub describe: Describe,
+    /// What makes animations.
+    pub animate: Animate,
     /// What scenes take from files, and where what took long is kept.
     pub assets: Assets,
 }

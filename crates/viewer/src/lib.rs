@@ -13,7 +13,7 @@
 //! | [`clock`] | the time of an animation |
 //! | [`pace`] | how many pictures there are a second |
 //! | [`preset`] | methods that go together |
-//! | [`save`](mod@save) | pictures as files |
+//! | [`save`](mod@save), [`movie`] | pictures and animations as files |
 //! | [`slice`](mod@slice), [`pick`] | a plane through the field; what is under the cursor |
 //! | [`app`] | the window itself |
 //!
@@ -35,6 +35,7 @@ pub mod engine;
 pub mod ladder;
 mod launch;
 pub mod loader;
+pub mod movie;
 mod overlay;
 pub mod pace;
 pub mod panel;

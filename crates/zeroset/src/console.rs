@@ -120,7 +120,7 @@ impl Console {
     }
 
     /// One that says only what went wrong, without a log.
-    #[cfg(all(test, feature = "gpu"))]
+    #[cfg(any(feature = "window", all(test, feature = "gpu")))]
     pub(crate) fn silent() -> Console {
         Console {
             colour: false,
