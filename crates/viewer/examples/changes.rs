@@ -20,7 +20,7 @@ for i in range(8):
     a = tau * i / 8
     knee = (1.3 * cos(a), 0.2 + 0.3 * bend, 1.3 * sin(a))
     end = (2.2 * cos(a + bend), -0.3 + 0.4 * bend, 2.2 * sin(a + bend))
-    parts += [capsule((0.4 * cos(a), 0.3, 0.4 * sin(a)), knee, 0.22), capsule(knee, end, 0.14)]
+    parts += [polyline_tube(0.22, [(0.4 * cos(a), 0.3, 0.4 * sin(a)), knee]), polyline_tube(0.14, [knee, end])]
 body = parts[0]
 for part in parts[1:]:
     body = body.smooth_union(part, radius = 0.25)
@@ -62,8 +62,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             scene,
         })
     };
+    let steps = 160;
     let (mut count, mut began, mut last) = (0, Instant::now(), None);
-    for step in 0..240 {
+    for step in 0..steps {
         engine.ask(request(0.5 + 0.4 * (0.05 * f64::from(step)).sin())?);
         // the first picture that answers it; those before it belong to other requests
         loop {

@@ -385,8 +385,11 @@ impl App {
     fn side(&mut self, ui: &mut Ui) {
         let size = self.stage.pixels(ui.ctx());
         let session = &mut self.session;
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            ui.set_width(ui.available_width() - GAP);
+        // what is wider all the same is scrolled to, and does not make the panel wider
+        let width = ui.available_width() - GAP;
+        ScrollArea::both().auto_shrink(false).show(ui, |ui| {
+            ui.set_max_width(width);
+            ui.set_min_width(width);
             if session.comparison.is_on {
                 section(ui, "A and B", true, |ui| panel::comparison(ui, session));
             }

@@ -2,8 +2,8 @@
 
 use crate::preset::Preset;
 use crate::session::Session;
-use crate::widget::{aside, choose, choose_or, real, row, section, slide, switch, whole};
-use eframe::egui::{Slider, Ui};
+use crate::widget::{aside, choose, choose_or, real, section, slide, switch, whole};
+use eframe::egui::{RichText, Slider, Ui};
 use zeroset_scene::settings::Settings;
 
 /// What is seen of the film, and how bright.
@@ -17,7 +17,10 @@ pub fn view(ui: &mut Ui, session: &mut Session) {
 /// Methods that go together, at a press.
 pub fn presets(ui: &mut Ui, session: &mut Session) {
     let look = session.edited();
-    row(ui, "Quality", "Sets all methods at once.", |ui| {
+    let about = "Sets all methods at once.";
+    ui.label(RichText::new("Quality").weak())
+        .on_hover_text(about);
+    ui.horizontal_wrapped(|ui| {
         for preset in Preset::ALL {
             let mut settings = look.settings;
             let shadow = preset.apply(&mut settings);
