@@ -63,9 +63,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         })
     };
     let steps = 160;
+    let mut loading = Duration::ZERO;
     let (mut count, mut began, mut last) = (0, Instant::now(), None);
     for step in 0..steps {
-        engine.ask(request(0.5 + 0.4 * (0.05 * f64::from(step)).sin())?);
+        let start = Instant::now();
+        let next = request(0.5 + 0.4 * (0.05 * f64::from(step)).sin())?;
+        loading += start.elapsed();
+        engine.ask(next);
         // the first picture that answers it; those before it belong to other requests
         loop {
             match engine.wait(Duration::from_secs(60)) {
@@ -75,9 +79,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                         .is_none_or(|l| !Arc::ptr_eq(l, &shown.request));
                     last = Some(Arc::clone(&shown.request));
                     if is_first {
-                        let rung = shown.sides[0].rung;
+                        let side = &shown.sides[0];
                         if step % 40 == 39 {
-                            println!("{:?}: {:?}", rung.size, rung.draft);
+                            let [width, height] = side.rung.size;
+                            let (draft, rays) = (side.rung.draft, 1e3 * side.seconds);
+                            println!("{width}x{height}, {draft:?}: {rays:.0} ms of rays");
                         }
                         break;
                     }
@@ -90,10 +96,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         count += 1;
         if step == 39 {
             // by now it is known how fast this machine is
-            (count, began) = (0, Instant::now());
+            (count, began, loading) = (0, Instant::now(), Duration::ZERO);
         }
     }
     let rate = f64::from(count) / began.elapsed().as_secs_f64();
-    println!("{rate:.1} changes a second");
+    let loading = 1e3 * loading.as_secs_f64() / f64::from(count);
+    println!("{rate:.1} changes a second, of which each took {loading:.0} ms to load");
     Ok(())
 }

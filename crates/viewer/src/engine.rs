@@ -678,14 +678,11 @@ impl Worker<'_> {
                 }
                 (_, antialias) => Accumulator::new(own.size, antialias, &Plane::ALL),
             };
-            let began = Instant::now();
             let samples = into.samples()..own.samples();
-            let statistics = (self.prepared(request, side, own.draft)?).sample(
-                &request.camera,
-                samples,
-                &mut into,
-                observer,
-            )?;
+            let prepared = self.prepared(request, side, own.draft)?;
+            // making the scene ready takes as long for a small picture as for a large one
+            let began = Instant::now();
+            let statistics = prepared.sample(&request.camera, samples, &mut into, observer)?;
             let take = Take {
                 look: *look,
                 rung: own,

@@ -8,6 +8,8 @@ const BUDGET: f64 = 0.040;
 const UNMEASURED: f64 = 2e6;
 /// The coarsest picture has one pixel for so many of the window's, along a side.
 const COARSEST: u32 = 8;
+/// How many times as fast a draft is at least that is worth what it leaves out.
+const FASTER: f64 = 1.1;
 /// Rays a pixel of the pictures on the ladder.
 const RUNGS: [u32; 4] = [1, 4, 16, 64];
 
@@ -69,8 +71,10 @@ impl Rates {
         let mut best = at(Draft::Whole);
         for draft in drafts {
             let now = at(*draft);
-            // one that is no larger has nothing to say for what it leaves out
-            if now.0[0] > best.0[0] {
+            // one that is no larger and no faster has nothing to say for what it leaves out
+            let is_larger = now.0[0] > best.0[0];
+            let is_faster = self.of(*draft) > FASTER * self.of(best.1);
+            if is_larger || (best.0 != full && now.0 == best.0 && is_faster) {
                 best = now;
             }
         }
@@ -227,6 +231,8 @@ mod tests {
         assert_eq!(first(0.7), (Draft::Unoccluded, true));
         assert_eq!(first(0.45), (Draft::Shadowless, true));
         assert_eq!(first(0.1), (Draft::Shadowless, false));
+        // as coarse as it gets, and still too slow
+        assert_eq!(first(1e-4), (Draft::Shadowless, false));
         // what was measured to be of no use is left out of the choice
         let same = Rates([Some(0.5 * pixels / BUDGET); 3]);
         assert_eq!(rungs(full, FOUR, true, &same, 1)[0].draft, Draft::Whole);

@@ -4,18 +4,18 @@ use crate::session::Session;
 use crate::widget::aside;
 use eframe::egui::{Align, Label, Layout, RichText, Sense, Ui};
 use zeroset_output::display::{NAME, name as shown};
+use zeroset_scene::scene::Object;
 
 /// Every object with its place in the file; each can be hidden, or shown alone.
 pub fn objects(ui: &mut Ui, session: &mut Session) {
-    let names: Vec<(String, Option<(String, u32, u32)>)> = (session.objects().iter())
-        .map(|o| {
-            let name = match o.name.parse::<u64>() {
-                Ok(_) => format!("Object {}", o.name),
-                Err(_) => shown(&o.name, NAME),
-            };
-            (name, o.place.clone())
-        })
-        .collect();
+    let named = |o: &Object| {
+        let name = match o.name.parse::<u64>() {
+            Ok(_) => format!("Object {}", o.name),
+            Err(_) => shown(&o.name, NAME),
+        };
+        (name, o.place.clone())
+    };
+    let names: Vec<_> = session.objects().iter().map(named).collect();
     for (number, (name, place)) in names.iter().enumerate() {
         let mut is_shown = !session.hidden.contains(&number);
         ui.horizontal(|ui| {
