@@ -32,7 +32,7 @@ fn maker() -> Session {
 fn on(session: Session, show: fn(&mut Ui, &mut Session)) -> Harness<'static, Session> {
     let mut harness = Harness::builder()
         .with_size([420.0, 700.0])
-        .build_ui_state(move |ui, session| show(ui, session), session);
+        .build_ui_state(show, session);
     harness.run();
     harness
 }
