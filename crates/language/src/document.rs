@@ -239,7 +239,7 @@ fn with_own(path: &Path, mut files: Vec<PathBuf>) -> Vec<PathBuf> {
     clippy::disallowed_methods,
     reason = "a thread only where there are threads"
 )]
-fn on_a_deep_stack<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, Failed> {
+pub(crate) fn on_a_deep_stack<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, Failed> {
     if cfg!(target_family = "wasm") {
         return Ok(work());
     }

@@ -44,6 +44,11 @@ pub mod naming;
 mod radiance;
 pub mod registers;
 pub mod report;
+#[allow(
+    clippy::disallowed_methods,
+    reason = "reads the file that is to be written again"
+)]
+pub mod revision;
 mod sampled;
 pub mod starlark;
 mod trees;

@@ -2,7 +2,7 @@
 
 use crate::converge::{self, Convergence};
 use crate::develop::develop;
-use crate::ladder::{self, Rung, rungs};
+use crate::ladder::{Draft, Rates, Rung, rungs};
 use crate::slice::{Cut, Slice};
 use eframe::egui::ColorImage;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -21,7 +21,7 @@ use zeroset_scene::progressive;
 use zeroset_scene::render::{Evaluations, Observer, Prepared, RenderError, Renderer};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::Antialias::{self, Supersample};
-use zeroset_scene::settings::{Settings, Shadow};
+use zeroset_scene::settings::{Integrator, Occlusion, Settings, Shadow};
 use zeroset_scene::valid::SceneError;
 use zeroset_trace::CpuRenderer;
 
@@ -107,13 +107,23 @@ impl Request {
             && (self.camera, self.size) == (other.camera, other.size)
     }
 
-    /// The scene as a look shows it.
-    fn scene_of(&self, look: &Look) -> Result<Scene, SceneError> {
+    /// The scene as a look shows it, or a draft of it.
+    fn scene_of(&self, look: &Look, draft: Draft) -> Result<Scene, SceneError> {
         let mut parts = Scene::clone(&self.scene).into_parts();
         parts.settings = look.settings;
-        if let Some(shadow) = look.shadow {
+        let shadow = match draft {
+            Draft::Shadowless => Some(Shadow::None),
+            Draft::Whole | Draft::Unoccluded => look.shadow,
+        };
+        if let Some(shadow) = shadow {
             for light in &mut parts.lights {
                 light.shadow = shadow;
+            }
+        }
+        if draft != Draft::Whole {
+            parts.settings.occlusion = Occlusion::None;
+            for object in &mut parts.objects {
+                object.occlusion = None;
             }
         }
         parts.build()
@@ -170,6 +180,8 @@ struct Shared {
     changed: Condvar,
     /// Number of the newest request.
     newest: AtomicU64,
+    /// Thousandths of the picture in the making that are done.
+    done: AtomicU64,
     ended: AtomicBool,
 }
 
@@ -199,6 +211,7 @@ impl Engine {
             wanted: Mutex::default(),
             changed: Condvar::new(),
             newest: AtomicU64::new(0),
+            done: AtomicU64::new(0),
             ended: AtomicBool::new(false),
         });
         let (tell, events) = channel();
@@ -230,6 +243,11 @@ impl Engine {
     /// As [`Engine::take`], and waits for it.
     pub fn wait(&self, most: std::time::Duration) -> Option<Event> {
         self.events.recv_timeout(most).ok()
+    }
+
+    /// How much of the picture in the making is done, 0 to 1.
+    pub fn progress(&self) -> f32 {
+        self.shared.done.load(Ordering::Relaxed) as f32 / 1000.0
     }
 
     /// Whether the thread still runs.
@@ -270,7 +288,10 @@ struct Impatient<'a> {
 }
 
 impl Observer for Impatient<'_> {
-    fn advance(&self, _rays: u64, _total: u64) {}
+    fn advance(&self, rays: u64, total: u64) {
+        let done = rays.saturating_mul(1000) / total.max(1);
+        self.shared.done.store(done.min(1000), Ordering::Relaxed);
+    }
 
     fn is_cancelled(&self) -> bool {
         if self.shared.ended.load(Ordering::Relaxed) {
@@ -335,7 +356,7 @@ impl Kept {
     }
 
     fn keep(&mut self, take: &Take, full: [u32; 2]) {
-        if take.rung.size == full {
+        if take.rung.size == full && take.rung.draft == Draft::Whole {
             self.films.retain(|r| !r.look.has_rays_of(&take.look));
             self.films.push(take.clone());
         }
@@ -361,6 +382,7 @@ impl News {
 struct Ready {
     scene: Arc<Scene>,
     look: Look,
+    draft: Draft,
     prepared: Box<dyn Prepared>,
 }
 
@@ -373,7 +395,9 @@ struct Worker<'a> {
     fell_back: Arc<AtomicBool>,
     /// One for each look at most.
     ready: Vec<Ready>,
-    rate: Option<f64>,
+    /// The same for drafts.
+    drafts: Vec<Ready>,
+    rates: Rates,
     kept: Kept,
     converging: converge::Kept,
     cut: Cut,
@@ -417,7 +441,8 @@ impl Worker<'_> {
             renderer: Fallback::new(renderer, Box::new(make), Box::new(tell)),
             fell_back,
             ready: Vec::new(),
-            rate: None,
+            drafts: Vec::new(),
+            rates: Rates::default(),
             kept: Kept::default(),
             converging: converge::Kept::default(),
             cut: Cut::default(),
@@ -453,6 +478,7 @@ impl Worker<'_> {
                 Err(_) => {
                     self.say(Event::Failed(BROKEN.to_owned()));
                     self.ready.clear();
+                    self.drafts.clear();
                     self.renderer.give_up(&RenderError::Device {
                         reason: BROKEN.to_owned(),
                         advice: None,
@@ -460,7 +486,8 @@ impl Worker<'_> {
                 }
             }
             if self.fell_back.swap(false, Ordering::Relaxed) {
-                (self.rate, self.kept, self.cut) = (None, Kept::default(), Cut::default());
+                (self.kept, self.cut) = (Kept::default(), Cut::default());
+                self.rates = Rates::default();
                 self.converging.clear();
             }
         }
@@ -472,19 +499,23 @@ impl Worker<'_> {
         };
         let sides = request.looks.len();
         // two looks climb together, each as far as its own antialiasing goes
-        let ladder = |look: &Look, rate| {
+        let ladder = |look: &Look, rates| {
             rungs(
                 request.size,
                 look.settings.antialias,
                 request.refine,
-                rate,
+                rates,
                 sides,
             )
         };
-        let longest = request.looks.iter().map(|l| ladder(l, self.rate));
+        let rates = match request.looks.iter().all(may_be_drafted) {
+            true => self.rates,
+            false => self.rates.of_whole_pictures(),
+        };
+        let longest = request.looks.iter().map(|l| ladder(l, &rates));
         let mut rungs = longest
             .max_by_key(Vec::len)
-            .unwrap_or_else(|| ladder(first, self.rate));
+            .unwrap_or_else(|| ladder(first, &rates));
         self.kept.turn_to(&request);
         let (full, kept) = (request.size, &self.kept);
         let is_there = |rung: &Rung| {
@@ -507,6 +538,7 @@ impl Worker<'_> {
                 is_first: i == 1,
                 began: Instant::now(),
             };
+            self.shared.done.store(0, Ordering::Relaxed);
             let films = self.render(&request, &rung, wanted, &mut sums, &observer)?;
             let is_last = i == count && request.converge.is_none();
             self.show(&request, &films, is_last);
@@ -554,7 +586,7 @@ impl Worker<'_> {
         loop {
             for (side, converging) in kept.pictures.iter_mut().enumerate() {
                 if !converging.is_done(noise) {
-                    let prepared = self.prepared(request, side)?.as_mut();
+                    let prepared = self.prepared(request, side, Draft::Whole)?.as_mut();
                     converging.advance(prepared, request, noise, observer)?;
                 }
             }
@@ -585,17 +617,24 @@ impl Worker<'_> {
         &mut self,
         request: &Request,
         side: usize,
+        draft: Draft,
     ) -> Result<&mut Box<dyn Prepared>, RenderError> {
         let look = request.looks[side];
+        let all = match draft {
+            Draft::Whole => &mut self.ready,
+            Draft::Unoccluded | Draft::Shadowless => &mut self.drafts,
+        };
         // a look whose film is kept needs none ready: there may be fewer of them than looks before this one
-        let at = side.min(self.ready.len());
-        let is_it = self.ready.get(at).is_some_and(|ready| {
-            Arc::ptr_eq(&ready.scene, &request.scene) && ready.look.has_rays_of(&look)
+        let at = side.min(all.len());
+        let is_it = all.get(at).is_some_and(|ready| {
+            Arc::ptr_eq(&ready.scene, &request.scene)
+                && ready.draft == draft
+                && ready.look.has_rays_of(&look)
         });
         if !is_it {
-            let scene = Arc::new(request.scene_of(&look)?);
-            let prepared = if at < self.ready.len() {
-                let mut ready = self.ready.remove(at);
+            let scene = Arc::new(request.scene_of(&look, draft)?);
+            let prepared = if at < all.len() {
+                let mut ready = all.remove(at);
                 ready.prepared.update(scene)?;
                 ready.prepared
             } else {
@@ -604,11 +643,12 @@ impl Worker<'_> {
             let ready = Ready {
                 scene: Arc::clone(&request.scene),
                 look,
+                draft,
                 prepared,
             };
-            self.ready.insert(at, ready);
+            all.insert(at, ready);
         }
-        Ok(&mut self.ready[at].prepared)
+        Ok(&mut all[at].prepared)
     }
 
     /// A film for each look: one that is there, or a new one. `wanted` is how many samples a pixel has in the end, `sums` are
@@ -622,6 +662,7 @@ impl Worker<'_> {
         observer: &dyn Observer,
     ) -> Result<Vec<Take>, RenderError> {
         self.ready.truncate(request.looks.len());
+        self.drafts.truncate(request.looks.len());
         let mut films = Vec::with_capacity(request.looks.len());
         for (side, look) in request.looks.iter().enumerate() {
             if let Some(take) = self.kept.find(look, rung, request.size) {
@@ -637,14 +678,11 @@ impl Worker<'_> {
                 }
                 (_, antialias) => Accumulator::new(own.size, antialias, &Plane::ALL),
             };
-            let began = Instant::now();
             let samples = into.samples()..own.samples();
-            let statistics = (self.prepared(request, side)?).sample(
-                &request.camera,
-                samples,
-                &mut into,
-                observer,
-            )?;
+            let prepared = self.prepared(request, side, own.draft)?;
+            // making the scene ready takes as long for a small picture as for a large one
+            let began = Instant::now();
+            let statistics = prepared.sample(&request.camera, samples, &mut into, observer)?;
             let take = Take {
                 look: *look,
                 rung: own,
@@ -655,7 +693,7 @@ impl Worker<'_> {
                 convergence: None,
             };
             if own.samples() == 1 {
-                self.rate = ladder::measured(self.rate, take.rays, take.seconds);
+                self.rates.measure(own.draft, take.rays, take.seconds);
             }
             if into.filter().is_some() {
                 sums[side] = Some(into);
@@ -708,6 +746,7 @@ fn taken_of(converging: &converge::Converging, noise: f64) -> Take {
         look: converging.look,
         rung: Rung {
             size: picture.size(),
+            draft: Draft::Whole,
             antialias: Supersample {
                 samples: picture.samples().round() as u32,
                 filter,
@@ -719,6 +758,12 @@ fn taken_of(converging: &converge::Converging, noise: f64) -> Take {
         evaluations: converging.evaluations,
         convergence: Some(converging.convergence(noise)),
     }
+}
+
+/// Whether occlusion and shadows can be left out for a moment: paths of light have no methods for them, and who looks at other planes
+/// wants those.
+fn may_be_drafted(look: &Look) -> bool {
+    look.plane == Plane::Colour && !matches!(look.settings.integrator, Integrator::Path { .. })
 }
 
 /// A picture of the ladder with the antialiasing that a look asks for.

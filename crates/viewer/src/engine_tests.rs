@@ -449,3 +449,40 @@ fn pictures_converge_in_place() {
     engine.ask(wanted);
     assert!(last(&engine).sides[0].film == before.sides[0].film);
 }
+
+/// A draft that the ladder asks for has no occlusion and no shadows, and is kept from being taken for the whole picture.
+#[test]
+fn drafts_leave_out_what_they_say() {
+    let mut wanted = request("show(sphere(1), ao = quilez())\nshow(plane())\n", [8, 8]);
+    let look = wanted.looks[0];
+    let of = |draft| wanted.scene_of(&look, draft).unwrap();
+    let shadows = |scene: &Scene| scene.lights().iter().any(|l| l.shadow != Shadow::None);
+    let occluded = |scene: &Scene| {
+        scene.settings().occlusion != Occlusion::None
+            || scene.objects().iter().any(|o| o.occlusion.is_some())
+    };
+    let seen = Draft::ALL.map(|d| (occluded(&of(d)), shadows(&of(d))));
+    assert_eq!(seen, [(true, true), (false, true), (false, false)]);
+    assert!(may_be_drafted(&look));
+    wanted.looks[0].plane = Plane::Occlusion;
+    assert!(!may_be_drafted(&wanted.looks[0]));
+    let film = Arc::new(Film::new(8, 8));
+    let take = |draft| Take {
+        look,
+        rung: Rung {
+            size: [8, 8],
+            draft,
+            antialias: Antialias::None,
+        },
+        film: Arc::clone(&film),
+        seconds: 1.0,
+        rays: 64,
+        evaluations: Evaluations::default(),
+        convergence: None,
+    };
+    let mut kept = Kept::default();
+    kept.keep(&take(Draft::Shadowless), [8, 8]);
+    assert!(kept.films.is_empty());
+    kept.keep(&take(Draft::Whole), [8, 8]);
+    assert_eq!(kept.films.len(), 1);
+}

@@ -3,6 +3,8 @@
 use crate::app::App;
 use crate::engine::MakeRenderer;
 use crate::loader::Explain;
+use crate::movie::Animate;
+use crate::save::Describe;
 use eframe::egui::{ViewportBuilder, vec2};
 use std::path::PathBuf;
 use zeroset_language::assets::Assets;
@@ -19,6 +21,10 @@ pub struct Open {
     pub renderer: MakeRenderer,
     /// What a person is told of a scene that cannot be loaded.
     pub explain: Explain,
+    /// What goes into a picture so that it can be made again.
+    pub describe: Describe,
+    /// What makes animations.
+    pub animate: Animate,
     /// What scenes take from files, and where what took long is kept.
     pub assets: Assets,
 }

@@ -11,6 +11,9 @@
 //! | [`converge`] | pictures that go on until there is little noise |
 //! | [`loader`] | the thread that loads the scene, and again on every save |
 //! | [`clock`] | the time of an animation |
+//! | [`pace`] | how many pictures there are a second |
+//! | [`preset`] | methods that go together |
+//! | [`save`](mod@save), [`movie`] | pictures and animations as files |
 //! | [`slice`](mod@slice), [`pick`] | a plane through the field; what is under the cursor |
 //! | [`app`] | the window itself |
 //!
@@ -32,10 +35,14 @@ pub mod engine;
 pub mod ladder;
 mod launch;
 pub mod loader;
+pub mod movie;
+mod overlay;
+pub mod pace;
 pub mod panel;
 pub mod pick;
+pub mod preset;
 pub mod rig;
-mod save;
+pub mod save;
 pub mod session;
 pub mod slice;
 mod stage;

@@ -1,6 +1,8 @@
-//! The thread that loads: the scene again for every change of time or of a slider, and whenever a file is saved.
+//! The thread that loads: the scene again for every change of time or of a slider, and whenever a file is saved. It writes values
+//! back into the file too, so that reading and writing never meet.
 
 use std::collections::BTreeMap;
+use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -9,7 +11,9 @@ use zeroset_language::assets::Assets;
 use zeroset_language::document::Document;
 use zeroset_language::load::{Control, Failed, Loaded, Options, Parameter};
 use zeroset_language::report::Report;
+use zeroset_language::revision::{Change, Revision, revise_file};
 use zeroset_language::watch::{PAUSE, Watched};
+use zeroset_output::atomic::write_atomically;
 
 /// What a person is told of a scene that cannot be loaded.
 pub type Explain = fn(&Failed) -> String;
@@ -25,10 +29,28 @@ pub struct Outcome {
     pub result: Result<Arc<Loaded>, String>,
 }
 
+/// What became of values that were to be written into the file, or why none was.
+pub type Written = Result<Revision, String>;
+
+/// What the thread is asked for.
+enum Ask {
+    /// The scene with these options.
+    Load(Options),
+    /// What parameters are set to, and other changes, to be put into the file.
+    Write(Options, Vec<Change>),
+}
+
+/// What the thread says.
+enum Answer {
+    Loaded(Outcome),
+    Written(Written),
+}
+
 /// The window's end of the thread that loads.
 pub struct Loader {
-    ask: Sender<Options>,
+    ask: Sender<Ask>,
     outcomes: Receiver<Outcome>,
+    written: Receiver<Written>,
 }
 
 impl Loader {
@@ -46,10 +68,15 @@ impl Loader {
     ) -> std::io::Result<Loader> {
         let (ask, asked) = channel();
         let (tell, outcomes) = channel();
+        let (confirm, written) = channel();
         let work = move || {
             let mut watcher = Watcher::new(path, options, explain, assets);
-            while let Some(outcome) = watcher.next(&asked) {
-                if tell.send(outcome).is_err() {
+            while let Some(answer) = watcher.next(&asked) {
+                let is_heard = match answer {
+                    Answer::Loaded(outcome) => tell.send(outcome).is_ok(),
+                    Answer::Written(written) => confirm.send(written).is_ok(),
+                };
+                if !is_heard {
                     return;
                 }
                 wake();
@@ -58,13 +85,29 @@ impl Loader {
         std::thread::Builder::new()
             .name("loader".into())
             .spawn(work)?;
-        Ok(Loader { ask, outcomes })
+        Ok(Loader {
+            ask,
+            outcomes,
+            written,
+        })
     }
 
     /// Asks for the scene with other parameters or at another time.
     pub fn ask(&self, options: Options) {
         // a thread that is gone has said why
-        let _ = self.ask.send(options);
+        let _ = self.ask.send(Ask::Load(options));
+    }
+
+    /// Asks for what parameters are set to, and other changes, to be written into the file. What is there then is loaded as after
+    /// any other save.
+    pub fn write(&self, options: Options, changes: Vec<Change>) {
+        // a thread that is gone has said why
+        let _ = self.ask.send(Ask::Write(options, changes));
+    }
+
+    /// What became of a write, once.
+    pub fn take_written(&self) -> Option<Written> {
+        self.written.try_recv().ok()
     }
 
     /// The next outcome, if there is one.
@@ -88,6 +131,8 @@ struct Watcher {
     assets: Assets,
     /// The files as they were read last; none where they could not be.
     document: Option<Document>,
+    /// What was asked for after what is being done.
+    next: Option<Ask>,
 }
 
 impl Watcher {
@@ -100,29 +145,60 @@ impl Watcher {
             is_first: true,
             assets,
             document: None,
+            next: None,
         }
     }
 
     /// Waits until there is something to load, and loads it. `None` where nobody waits any more.
-    fn next(&mut self, asked: &Receiver<Options>) -> Option<Outcome> {
+    fn next(&mut self, asked: &Receiver<Ask>) -> Option<Answer> {
         if std::mem::take(&mut self.is_first) {
-            return Some(self.load(false));
+            return Some(Answer::Loaded(self.load(false)));
         }
         loop {
-            match asked.recv_timeout(PAUSE) {
-                Ok(options) => {
+            let ask = match self.next.take() {
+                Some(ask) => Ok(ask),
+                None => asked.recv_timeout(PAUSE),
+            };
+            match ask {
+                Ok(Ask::Load(options)) => {
+                    self.options = options;
                     // of many moves of a slider the last one counts
-                    self.options = asked.try_iter().last().unwrap_or(options);
-                    return Some(self.load(false));
+                    for ask in asked.try_iter() {
+                        match ask {
+                            Ask::Load(options) => self.options = options,
+                            Ask::Write(..) => {
+                                self.next = Some(ask);
+                                break;
+                            }
+                        }
+                    }
+                    return Some(Answer::Loaded(self.load(false)));
+                }
+                Ok(Ask::Write(options, changes)) => {
+                    return Some(Answer::Written(self.write(&options, &changes)));
                 }
                 Err(RecvTimeoutError::Disconnected) => return None,
                 Err(RecvTimeoutError::Timeout) => {}
             }
             if self.watched.changed() {
                 self.watched = self.watched.settled();
-                return Some(self.load(true));
+                return Some(Answer::Loaded(self.load(true)));
             }
         }
+    }
+
+    /// Writes values into the file, which is then seen to have changed.
+    fn write(&self, options: &Options, changes: &[Change]) -> Written {
+        let work = || revise_file(&self.path, options, changes, &self.assets);
+        let revised = catch_unwind(AssertUnwindSafe(work))
+            .map_err(|_| "the writer broke down; please report this scene as a bug".to_owned())?
+            .map_err(|failed| failed.to_string())?;
+        if revised.is_changed() {
+            let text = revised.revision.text.as_bytes();
+            write_atomically(&self.path, |writer| writer.write_all(text))
+                .map_err(|e| format!("{e}; {}", e.advice()))?;
+        }
+        Ok(revised.revision)
     }
 
     /// Loads the scene. A fault of this program is a mistake in this scene, and the next one is waited for.
@@ -253,6 +329,31 @@ mod tests {
         std::fs::write(&path, narrower).unwrap();
         let edited = loader.wait(patience()).unwrap();
         assert!(edited.result.is_ok() && edited.options.set.is_empty());
+    }
+
+    #[test]
+    fn what_the_window_writes_is_loaded_as_any_other_save() {
+        let (_folder, path, loader) = started(BALL);
+        loader.wait(patience()).unwrap();
+        loader.ask(set("r", "0.75"));
+        assert!(!loader.wait(patience()).unwrap().is_edit);
+        loader.write(set("r", "0.75"), Vec::new());
+        let edited = loader.wait(patience()).unwrap();
+        assert!(edited.is_edit);
+        let loaded = edited.result.unwrap();
+        assert_eq!(loaded.parameters[0].value, loaded.parameters[0].default);
+        let written = loader.take_written().unwrap().unwrap();
+        assert_eq!(
+            (written.written, written.left),
+            (vec!["`r`".to_owned()], vec![])
+        );
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert_eq!(text, BALL.replace("0.5", "0.75"));
+        // once, and a file that says it already is not touched
+        assert!(loader.wait(Duration::from_millis(300)).is_none());
+        loader.write(set("r", "0.75"), Vec::new());
+        assert!(loader.wait(Duration::from_millis(500)).is_none());
+        assert!(loader.take_written().unwrap().unwrap().left.is_empty());
     }
 
     #[test]

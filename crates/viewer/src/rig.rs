@@ -115,6 +115,16 @@ impl Rig {
         self.far = camera.far;
     }
 
+    /// Whether it sees what a camera sees, but for rounding and how far that is.
+    pub fn stands_at(&self, camera: &Camera) -> bool {
+        let own = self.camera();
+        own.eye == camera.eye
+            && own.axes.abs_diff_eq(camera.axes, 2e-5)
+            && own.lens == camera.lens
+            && (own.near, own.aperture) == (camera.near, camera.aperture)
+            && (own.aperture == 0.0 || (own.focus - camera.focus).abs() <= 1e-5 * own.focus)
+    }
+
     /// Radius of the lens, and how far before it what is sharp lies.
     pub fn lens(&self) -> [f32; 2] {
         [self.aperture, self.focus]
@@ -143,6 +153,11 @@ impl Rig {
     /// From the eye to the point that it orbits, scene units.
     pub fn distance(&self) -> f64 {
         self.distance
+    }
+
+    /// What orbits turn around: the way that is up.
+    pub fn up(&self) -> DVec3 {
+        self.up
     }
 
     /// Turns around the pivot: `right` and `down` are how far the hand moved what is seen, radians.

@@ -3,25 +3,30 @@
 use crate::clock::Clock;
 use crate::engine::{Look, Request, Shown};
 use crate::loader::Outcome;
+use crate::pace::Pace;
 use crate::pick::Picked;
 use crate::rig::{Rig, widened};
 use crate::slice::Slice;
+use glam::Vec3;
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 use zeroset_language::load::{Loaded, Options, Parameter, Setting};
 use zeroset_language::naming::default_stem;
+use zeroset_language::revision::{Change, Look as MaterialLook};
 use zeroset_output::display::{NAME, name};
 use zeroset_output::view::LegendKey;
 use zeroset_scene::camera::Camera;
 use zeroset_scene::film::Plane;
-use zeroset_scene::scene::Scene;
+use zeroset_scene::light::{Light, Source};
+use zeroset_scene::scene::{Object, Scene};
 use zeroset_scene::settings::Settings;
 
 /// The last version of the scene that could be loaded.
 pub struct Current {
-    /// The scene.
+    /// The scene as it is shown: with what was changed of its stage, without what is hidden.
     pub scene: Arc<Scene>,
-    /// All that loading found out.
+    /// All that loading found out, the scene as the file makes it.
     pub loaded: Arc<Loaded>,
 }
 
@@ -52,6 +57,14 @@ pub struct Session {
     pub rig: Rig,
     /// Whether the camera was moved away from where the file puts it.
     pub is_free: bool,
+    /// What was changed of the sun, the sky and materials: one of a kind for each.
+    pub stage: Vec<Change>,
+    /// Whether drags on the picture move the sun.
+    pub is_sun_held: bool,
+    /// Whether the ground is drawn as a grid.
+    pub has_grid: bool,
+    /// Objects that are not shown, by their number in the file's scene.
+    pub hidden: BTreeSet<usize>,
     /// How A and B show the scene.
     pub looks: [Look; 2],
     /// A and B beside each other.
@@ -72,6 +85,10 @@ pub struct Session {
     pub picked: Option<Picked>,
     /// The picture that is shown.
     pub shown: Option<Box<Shown>>,
+    /// How fast pictures follow each other, where they do.
+    pub pace: Pace,
+    /// How much of the picture in the making is done, 0 to 1.
+    pub progress: Option<f32>,
     /// What renders.
     pub backend: Option<String>,
     /// How often the file was saved.
@@ -110,6 +127,10 @@ impl Session {
             trouble: None,
             rig: Rig::new(&camera, None),
             is_free: false,
+            stage: Vec::new(),
+            is_sun_held: false,
+            has_grid: false,
+            hidden: BTreeSet::new(),
             looks: [look; 2],
             comparison: SideBySide {
                 is_on: false,
@@ -123,6 +144,8 @@ impl Session {
             is_sliced: false,
             picked: None,
             shown: None,
+            pace: Pace::default(),
+            progress: None,
             backend: None,
             edition: 0,
             stated,
@@ -190,6 +213,10 @@ impl Session {
             }
         };
         self.trouble = None;
+        if outcome.is_edit {
+            self.forget_what_is_written(&loaded);
+        }
+        self.keep_stage(&loaded.scene);
         let scene = Arc::new(loaded.scene.clone());
         let moved = match &self.current {
             None => true,
@@ -203,7 +230,11 @@ impl Session {
                     && (outcome.is_edit || !self.is_free)
             }
         };
-        if moved {
+        if moved && self.current.is_some() && self.rig.stands_at(scene.camera()) {
+            // as when the window wrote it: what it orbits stays
+            self.rig.see_as_far_as(scene.camera());
+            self.is_free = false;
+        } else if moved {
             self.rig = Rig::new(scene.camera(), scene.finite_bounds());
             self.is_free = false;
         } else {
@@ -223,6 +254,158 @@ impl Session {
             self.picked = None;
         }
         self.current = Some(Current { scene, loaded });
+        self.set_stage();
+    }
+
+    /// Parameters that the file says by now need not be set.
+    fn forget_what_is_written(&mut self, loaded: &Loaded) {
+        for parameter in &loaded.parameters {
+            let text = self.options.set.get(&parameter.name);
+            let set = text.and_then(|text| read(&parameter.default, text));
+            if set.as_ref() == Some(&parameter.default) {
+                self.options.set.remove(&parameter.name);
+                self.asked.set.remove(&parameter.name);
+            }
+        }
+    }
+
+    /// Keeps what was changed of the stage as long as the scene has it as it was.
+    fn keep_stage(&mut self, now: &Scene) {
+        let Some(current) = &self.current else {
+            return;
+        };
+        let before = &current.loaded.scene;
+        self.stage.retain(|change| match change {
+            Change::Sun { .. } => before.lights() == now.lights(),
+            Change::Sky { .. } => before.sky() == now.sky(),
+            Change::Material { .. } => before.materials() == now.materials(),
+            Change::Parameter { .. } | Change::Camera { .. } => false,
+        });
+        if before.objects().len() != now.objects().len() {
+            self.hidden.clear();
+        }
+    }
+
+    /// Makes the scene that is shown of the file's.
+    fn set_stage(&mut self) {
+        let Some(current) = &mut self.current else {
+            return;
+        };
+        let mut scene = current.loaded.scene.clone();
+        if self.stage.is_empty() && self.hidden.is_empty() {
+            current.scene = Arc::new(scene);
+            return;
+        }
+        let result = scene.edit(|parts| {
+            self.stage.iter().for_each(|change| change.apply(parts));
+            let mut number = 0..;
+            (parts.objects).retain(|_| number.next().is_none_or(|n| !self.hidden.contains(&n)));
+        });
+        match result {
+            Ok(()) => current.scene = Arc::new(scene),
+            Err(error) => self.trouble = Some(error.to_string()),
+        }
+    }
+
+    /// Changes the sun, the sky or a material of what is shown. What was changed of the same before is replaced.
+    pub fn change(&mut self, change: Change) {
+        let is_same = |other: &Change| match (&change, other) {
+            (Change::Sun { light: a, .. }, Change::Sun { light: b, .. }) => a == b,
+            (Change::Material { material: a, .. }, Change::Material { material: b, .. }) => a == b,
+            (a, b) => std::mem::discriminant(a) == std::mem::discriminant(b),
+        };
+        self.stage.retain(|other| !is_same(other));
+        self.stage.push(change);
+        self.set_stage();
+    }
+
+    /// Takes back what was changed of the stage.
+    pub fn reset_stage(&mut self, is_meant: impl Fn(&Change) -> bool) {
+        self.stage.retain(|change| !is_meant(change));
+        self.set_stage();
+    }
+
+    /// The first light from far away, as it is shown, and its number.
+    pub fn sun(&self) -> Option<(usize, Light)> {
+        let scene = &self.current.as_ref()?.scene;
+        let is_sun = |l: &&Light| matches!(l.source, Source::Directional { .. });
+        let number = scene.lights().iter().position(|l| is_sun(&l))?;
+        Some((number, scene.lights()[number]))
+    }
+
+    /// Turns the sun to where its light travels along `direction`, which need not be of length 1.
+    pub fn turn_sun(&mut self, direction: Vec3) {
+        if let (Some((light, sun)), Some(direction)) = (self.sun(), direction.try_normalize()) {
+            self.change(Change::Sun {
+                light,
+                direction,
+                radiance: sun.radiance,
+            });
+        }
+    }
+
+    /// What was changed of a material.
+    pub fn look_of(&self, material: usize) -> MaterialLook {
+        let mut all = self.stage.iter().filter_map(|change| match change {
+            Change::Material { material: m, look } if *m == material => Some(*look),
+            _ => None,
+        });
+        all.next().unwrap_or_default()
+    }
+
+    /// The objects of the file's scene.
+    pub fn objects(&self) -> &[Object] {
+        self.current
+            .as_ref()
+            .map_or(&[], |c| c.loaded.scene.objects())
+    }
+
+    /// Shows an object, or hides it; the last one that is shown stays.
+    pub fn show_object(&mut self, number: usize, is_shown: bool) {
+        if is_shown {
+            self.hidden.remove(&number);
+        } else if self.hidden.len() + 1 < self.objects().len() {
+            self.hidden.insert(number);
+        }
+        self.set_stage();
+    }
+
+    /// Shows one object alone; or all again, if it is alone.
+    pub fn solo(&mut self, number: usize) {
+        let others: BTreeSet<usize> = (0..self.objects().len()).filter(|n| *n != number).collect();
+        self.hidden = if self.hidden == others {
+            BTreeSet::new()
+        } else {
+            others
+        };
+        self.set_stage();
+    }
+
+    /// The number in the file's scene of an object that was picked.
+    pub fn picked_object(&self) -> Option<usize> {
+        let picked = self.picked.as_ref()?;
+        let is_it = |o: &Object| (&o.name, &o.place) == (&picked.name, &picked.place);
+        self.objects().iter().position(is_it)
+    }
+
+    /// What was changed by hand and is not in the file, apart from parameters and methods.
+    pub fn changes(&self) -> Vec<Change> {
+        let mut all = self.stage.clone();
+        if let Some(current) = &self.current
+            && self.is_free
+            && !self.rig.stands_at(current.loaded.scene.camera())
+        {
+            all.push(Change::Camera {
+                camera: self.rig.camera(),
+                target: self.rig.pivot().as_vec3(),
+            });
+        }
+        all
+    }
+
+    /// Whether there is anything to write into the file.
+    pub fn is_unwritten(&self) -> bool {
+        !self.options.set.is_empty() || !self.changes().is_empty()
     }
 
     /// What to ask of the loader, if anything has changed.
@@ -232,6 +415,11 @@ impl Session {
             self.asked = self.options.clone();
             self.options.clone()
         })
+    }
+
+    /// Whether the scene is loaded with the parameters and the time that are set.
+    pub fn is_loaded(&self) -> bool {
+        self.options == self.asked
     }
 
     /// The settings that the file states.

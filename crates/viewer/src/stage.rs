@@ -1,6 +1,7 @@
 //! The picture, and what hands do on it.
 
-use crate::panel;
+use crate::overlay;
+use crate::panel::{self, SunPlace};
 use crate::pick::{depth, pick};
 use crate::session::Session;
 use crate::style::Palette;
@@ -12,6 +13,7 @@ use eframe::egui::{
 use glam::DVec3;
 use std::f64::consts::PI;
 use std::sync::Arc;
+use zeroset_scene::light::Source;
 
 /// How much nearer a notch of the wheel brings, by its points.
 const ZOOM: f64 = 0.0022;
@@ -71,10 +73,13 @@ impl Stage {
         let palette = Palette::of(ui.visuals());
         ui.painter().rect_filled(rect, 0.0, palette.surround);
         self.paint(ui, session, rect);
+        let size = self.pixels(ui.ctx());
+        overlay::grid(ui, session, rect, size);
         let divided = session.comparison.is_on && divider(ui, session, rect);
         if !divided {
             self.hand(ui, session, &response, rect);
         }
+        overlay::gizmo(ui, session, rect);
         if session.shown.is_none() && session.trouble.is_none() {
             let middle = rect.center();
             let ink = ui.visuals().weak_text_color();
@@ -111,6 +116,10 @@ impl Stage {
             let modifiers = ui.input(|i| i.modifiers);
             let [right, down] = [way.x, way.y].map(f64::from);
             let [yaw, pitch] = [right, down].map(|x| x * PI / height);
+            if session.is_sun_held && button == PointerButton::Primary && session.sun().is_some() {
+                drag_sun(session, yaw, pitch);
+                return;
+            }
             if button != PointerButton::Primary || modifiers.shift {
                 session.rig.pan(right, down, height);
             } else if modifiers.alt || flight(ui.ctx()) != DVec3::ZERO {
@@ -191,6 +200,22 @@ impl Stage {
                 share,
             )
         });
+    }
+}
+
+/// Moves the sun with the hand: around the vertical, and up and down as it is seen.
+fn drag_sun(session: &mut Session, right: f64, down: f64) {
+    let Some((_, sun)) = session.sun() else {
+        return;
+    };
+    if let Source::Directional { direction } = sun.source {
+        let place = SunPlace::of(direction);
+        let [right, down] = [right, down].map(|x| x.to_degrees() as f32);
+        let moved = SunPlace {
+            azimuth: place.azimuth + right,
+            elevation: (place.elevation - down).clamp(-89.9, 89.9),
+        };
+        session.turn_sun(moved.direction());
     }
 }
 

@@ -5,10 +5,13 @@ use eframe::egui::{
 };
 use zeroset_scene::methods::{Choice, Kind, Method, Param, Unit, Value};
 
-/// Width of the names before controls.
+/// Width of the names before controls, and their share of a narrow panel.
 const NAMES: f32 = 104.0;
+const SHARE: f32 = 0.36;
 /// Width of the numbers behind sliders.
 const NUMBERS: f32 = 62.0;
+/// The shortest slider.
+const SHORTEST: f32 = 28.0;
 
 /// A part of a panel that can be closed.
 pub(crate) fn section(ui: &mut Ui, title: &str, is_open: bool, body: impl FnOnce(&mut Ui)) {
@@ -32,11 +35,13 @@ pub(crate) fn row<R>(
     control: impl FnOnce(&mut Ui) -> R,
 ) -> (Response, R) {
     ui.horizontal(|ui| {
-        let size = Vec2::new(NAMES, ui.spacing().interact_size.y);
+        let names = NAMES.min(SHARE * ui.available_width());
+        let size = Vec2::new(names, ui.spacing().interact_size.y);
         let layout = Layout::left_to_right(Align::Center);
         let label = ui
             .allocate_ui_with_layout(size, layout, |ui| {
-                ui.set_min_width(NAMES);
+                ui.set_min_width(names);
+                ui.set_max_width(names);
                 let label = eframe::egui::Label::new(RichText::new(name).weak()).truncate();
                 ui.add(label)
             })
@@ -56,7 +61,7 @@ pub(crate) fn row<R>(
 pub(crate) fn slide(ui: &mut Ui, name: &str, about: &str, slider: Slider<'_>) -> Response {
     let (label, response) = row(ui, name, about, |ui| {
         let room = ui.available_width() - NUMBERS - ui.spacing().item_spacing.x;
-        ui.spacing_mut().slider_width = room.max(60.0);
+        ui.spacing_mut().slider_width = room.max(SHORTEST);
         ui.spacing_mut().interact_size.x = NUMBERS;
         ui.add(slider.clamping(SliderClamping::Edits))
     });

@@ -73,6 +73,8 @@ pub(crate) enum Command {
     Certify(CertifyArgs),
     /// Say why a pixel shows what it shows: its ray step by step, what sets each step, what is proven, what to do
     Why(WhyArgs),
+    /// Write values of sliders, choices, toggles and colours into a scene's file; all else in it stays as it is
+    Set(SetArgs),
     /// Print a scene as JSON, which every command takes in place of a script
     Expand(ExpandArgs),
     /// Print a scene as one shader: WGSL, or GLSL that runs when it is pasted into Shadertoy
@@ -372,6 +374,18 @@ pub(crate) struct CheckArgs {
     /// Print as JSON
     #[arg(long)]
     pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SetArgs {
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Parameters of the scene with their values, such as size=0.7
+    #[arg(value_name = "NAME=VALUE", value_parser = assignment)]
+    pub values: Vec<(String, String)>,
+    /// Print the new text instead of writing it
+    #[arg(long)]
+    pub print: bool,
 }
 
 #[derive(Debug, Args)]

@@ -11,6 +11,9 @@ use std::io::{self, IsTerminal, Write};
 use std::panic::PanicHookInfo;
 use std::time::Duration;
 use tracing::level_filters::LevelFilter;
+use tracing_subscriber::filter::Targets;
+use tracing_subscriber::layer::SubscriberExt;
+use tracing_subscriber::util::SubscriberInitExt;
 use zeroset_output::display;
 
 /// When to use colours.
@@ -102,12 +105,22 @@ impl Console {
             .with_ansi(false)
             .with_target(false)
             .with_timer(tracing_subscriber::fmt::time::uptime())
+            .finish()
+            .with(
+                // what libraries warn of helps nobody but who looks for a fault
+                Targets::new()
+                    .with_target("zeroset", level)
+                    .with_default(match verbose {
+                        0 => LevelFilter::ERROR,
+                        _ => level,
+                    }),
+            )
             .init();
         Console { colour, quiet }
     }
 
     /// One that says only what went wrong, without a log.
-    #[cfg(all(test, feature = "gpu"))]
+    #[cfg(any(feature = "window", all(test, feature = "gpu")))]
     pub(crate) fn silent() -> Console {
         Console {
             colour: false,

@@ -96,6 +96,7 @@ fn run(command: &Command, console: &Console) -> Result<(), Failure> {
         Command::Render(args) => render::run(args, console),
         Command::Check(args) => command::check::run(args, console),
         Command::Certify(args) => command::certify::run(args, console),
+        Command::Set(args) => command::set::run(args, console),
         Command::Expand(args) => command::expand::run(args, console),
         #[cfg(feature = "shaders")]
         Command::Export(args) => command::export::run(args, console),

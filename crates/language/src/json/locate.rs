@@ -4,7 +4,7 @@ use super::JsonStep;
 use std::ops::Range;
 
 /// The bytes of the value at the end of a path, or of the last one on the way that is there. The text must be JSON.
-pub(super) fn locate(text: &str, path: &[JsonStep]) -> Range<usize> {
+pub(crate) fn locate(text: &str, path: &[JsonStep]) -> Range<usize> {
     let mut scanner = Scanner::new(text);
     scanner.space();
     for step in path {
@@ -30,6 +30,26 @@ pub(super) fn items(text: &str, key: &str) -> Vec<u32> {
         scanner.value();
     }
     starts
+}
+
+/// Members of the object that begins at a byte, in their order: the bytes of each key with its quotes, and of its value.
+pub(crate) fn members(text: &str, at: usize) -> Vec<(Range<usize>, Range<usize>)> {
+    let mut scanner = Scanner::new(text);
+    scanner.at = at;
+    let mut all = Vec::new();
+    if scanner.peek() != b'{' {
+        return all;
+    }
+    scanner.at += 1;
+    while scanner.has_more() {
+        let start = scanner.at;
+        scanner.string();
+        let key = start..scanner.at;
+        scanner.space();
+        scanner.at += 1;
+        all.push((key, scanner.value()));
+    }
+    all
 }
 
 struct Scanner<'t> {

@@ -16,7 +16,7 @@
 //!   a program made) cannot be written, and [`expand`] says which number it is.
 
 pub(crate) mod formula;
-mod locate;
+pub(crate) mod locate;
 mod parse;
 mod read;
 pub(crate) mod valid;

@@ -400,7 +400,7 @@ fn material(c: &mut Call<'_, '_>) -> Run<Value> {
 }
 
 /// The exponent of Blinn's highlight that is about as wide as that of a roughness: `2 / alpha^2 - 2` (Walter et al. 2007).
-fn shininess_of(roughness: f32) -> f32 {
+pub(crate) fn shininess_of(roughness: f32) -> f32 {
     (2.0 / roughness.powi(4).max(1e-6) - 2.0).clamp(1.0, 1e4)
 }
 

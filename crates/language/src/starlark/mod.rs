@@ -50,7 +50,9 @@ mod text;
 mod value;
 
 pub(crate) use fields::direction_of_word;
+pub(crate) use materials::shininess_of;
 pub(crate) use native::spoken;
+pub(crate) use scope::assigned_names;
 pub use synonyms::{SYNONYMS, Synonym};
 
 use crate::draft::Draft;
@@ -88,6 +90,13 @@ fn natives() -> impl Iterator<Item = &'static Native> {
 pub(crate) fn is_native(name: &str) -> bool {
     let all = catalogue();
     natives().any(|n| n.name == name) || all.join(name).is_some() || all.primitive(name).is_some()
+}
+
+/// The parameters of a function of this crate that stands alone, in their order.
+pub(crate) fn parameters_of(name: &str) -> Vec<&'static str> {
+    let native = natives().find(|n| n.name == name);
+    let params = native.map_or(&[] as &[native::Slot], |n| n.params);
+    params.iter().map(|p| p.name).collect()
 }
 
 /// Every name that is there without being defined.

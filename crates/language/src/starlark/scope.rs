@@ -2,7 +2,7 @@
 
 use super::mistake::{Run, mistake};
 use crate::report::{Place, suggestion};
-use indexmap::IndexSet;
+use indexmap::{IndexMap, IndexSet};
 use starlark_syntax::syntax::ast::{
     AssignTargetP, AstAssignTarget, AstExpr, AstNoPayload, AstParameter, AstStmt, ClauseP, ExprP,
     ForClauseP, ParameterP, StmtP,
@@ -46,6 +46,35 @@ pub(crate) fn targets<'a>(target: &'a AstAssignTarget, names: &mut Names<'a>) {
         AssignTargetP::Identifier(ident) => _ = names.insert(&ident.node.ident),
         AssignTargetP::Index(_) | AssignTargetP::Dot(..) => {}
     }
+}
+
+/// The names that a file gives a meaning, in functions too, and how often it does.
+pub(crate) fn assigned_names(module: &AstStmt) -> IndexMap<&str, usize> {
+    fn count<'a>(names: &mut IndexMap<&'a str, usize>, found: impl Iterator<Item = &'a str>) {
+        for name in found {
+            *names.entry(name).or_default() += 1;
+        }
+    }
+    fn visit<'a>(stmt: &'a AstStmt, all: &mut IndexMap<&'a str, usize>) {
+        let mut names = Names::new();
+        match &stmt.node {
+            StmtP::Assign(assign) => targets(&assign.lhs, &mut names),
+            StmtP::AssignModify(target, ..) => targets(target, &mut names),
+            StmtP::For(f) => targets(&f.var, &mut names),
+            StmtP::Load(load) => names.extend(load.args.iter().map(|arg| &*arg.local.node.ident)),
+            StmtP::Def(def) => {
+                names.insert(&def.name.node.ident);
+                let params = def.params.iter().filter_map(|p| p.node.ident());
+                count(all, params.map(|i| &*i.node.ident));
+            }
+            _ => {}
+        }
+        count(all, names.into_iter());
+        stmt.visit_stmt(|s| visit(s, all));
+    }
+    let mut all = IndexMap::new();
+    visit(module, &mut all);
+    all
 }
 
 /// The names that a block assigns, nested functions left out.

@@ -28,7 +28,7 @@ pub fn camera(ui: &mut Ui, session: &mut Session, size: [u32; 2]) {
     let statement = session.rig.statement();
     ui.add_space(2.0);
     ui.label(RichText::new(&statement).monospace().small());
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         let about = "Puts this statement on the clipboard (Ctrl+Shift+C): paste it into the scene.";
         if ui.button("Copy as text").on_hover_text(about).clicked() {
             ui.ctx().copy_text(statement);
@@ -54,7 +54,7 @@ fn lens(ui: &mut Ui, session: &mut Session) {
     let [before, sharp] = session.rig.lens();
     let (mut aperture, mut focus) = (before, sharp);
     let step = session.rig.distance() * 1e-3;
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.label("Aperture");
         let number = DragValue::new(&mut aperture).range(0.0..=1e9).speed(step);
         ui.add(number).on_hover_text(

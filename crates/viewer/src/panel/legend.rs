@@ -2,7 +2,7 @@
 
 use super::picked::card;
 use crate::style::Palette;
-use eframe::egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Ui, Vec2, WidgetInfo, vec2};
+use eframe::egui::{Align2, Color32, Pos2, Rect, Sense, TextStyle, Ui, Vec2, WidgetInfo, vec2};
 use zeroset_output::view::LegendKey;
 
 /// Size of the bar of colours.
@@ -23,7 +23,7 @@ pub fn legend(ui: &mut Ui, key: &LegendKey) {
         let said = format!("Legend: {}", key.title);
         response.widget_info(|| WidgetInfo::labeled(eframe::egui::Role::Label, true, &said));
         let painter = ui.painter();
-        let font = FontId::proportional(11.5);
+        let font = TextStyle::Small.resolve(ui.style());
         let write = |at: Pos2, text: &str| {
             painter.text(at, Align2::LEFT_CENTER, text, font.clone(), ink);
         };

@@ -1,8 +1,9 @@
 //! The methods of the papers, side by side.
 
+use crate::preset::Preset;
 use crate::session::Session;
 use crate::widget::{aside, choose, choose_or, real, section, slide, switch, whole};
-use eframe::egui::{Slider, Ui};
+use eframe::egui::{RichText, Slider, Ui};
 use zeroset_scene::settings::Settings;
 
 /// What is seen of the film, and how bright.
@@ -11,6 +12,25 @@ pub fn view(ui: &mut Ui, session: &mut Session) {
     choose(ui, "Show", &mut look.plane);
     real(ui, &Settings::EXPOSURE, &mut look.settings.exposure);
     choose(ui, "Tone curve", &mut look.settings.tone);
+}
+
+/// Methods that go together, at a press.
+pub fn presets(ui: &mut Ui, session: &mut Session) {
+    let look = session.edited();
+    let about = "Sets all methods at once.";
+    ui.label(RichText::new("Quality").weak())
+        .on_hover_text(about);
+    ui.horizontal_wrapped(|ui| {
+        for preset in Preset::ALL {
+            let mut settings = look.settings;
+            let shadow = preset.apply(&mut settings);
+            let is_on = (settings, shadow) == (look.settings, look.shadow);
+            let button = ui.selectable_label(is_on, preset.name());
+            if button.on_hover_text(preset.about()).clicked() {
+                (look.settings, look.shadow) = (settings, shadow);
+            }
+        }
+    });
 }
 
 /// Every method that the edited look can have.

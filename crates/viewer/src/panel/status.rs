@@ -2,12 +2,18 @@
 
 use crate::converge::Convergence;
 use crate::engine::Exposed;
+use crate::ladder::Draft;
 use crate::session::Session;
 use eframe::egui::{Align, Layout, Response, RichText, Ui};
+use std::time::Instant;
 use zeroset_output::display::{NAME, name};
+
+/// A narrower window has no room for all of it, points.
+const WIDE: f32 = 720.0;
 
 /// Frame time, evaluations, resolution, rays a pixel, and what renders; of two looks, for each.
 pub fn status(ui: &mut Ui, session: &Session) {
+    let is_wide = ui.available_width() >= WIDE;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 18.0;
         match &session.shown {
@@ -15,9 +21,9 @@ pub fn status(ui: &mut Ui, session: &Session) {
                 quiet(ui, "no picture yet".to_owned());
             }
             Some(shown) => {
-                let is_one = shown.sides.len() == 1;
+                let is_one = shown.sides.len() == 1 && is_wide;
                 for (side, name) in shown.sides.iter().zip(["A", "B"]) {
-                    if !is_one {
+                    if shown.sides.len() > 1 {
                         ui.label(RichText::new(name).small().strong());
                     }
                     figures(ui, side, is_one);
@@ -27,8 +33,19 @@ pub fn status(ui: &mut Ui, session: &Session) {
                     Some(_) => "converging",
                     None => "refining",
                 };
-                quiet(ui, state.to_owned());
+                let state = match session.progress {
+                    Some(done) if !shown.is_last => format!("{state}, {:.0} %", 100.0 * done),
+                    _ => state.to_owned(),
+                };
+                quiet(ui, state).on_hover_text("How far the next picture is");
+                if let Some(rate) = session.pace.rate(Instant::now()) {
+                    quiet(ui, format!("{rate:.0} pictures a second"))
+                        .on_hover_text("Changes that were shown in the last second");
+                }
             }
+        }
+        if !is_wide {
+            return;
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let backend = session.backend.as_deref().unwrap_or("starting");
@@ -42,9 +59,9 @@ fn figures(ui: &mut Ui, side: &Exposed, is_long: bool) {
     let [width, height] = side.rung.size;
     let evaluations = side.evaluations.total() as f64 / side.rays.max(1) as f64;
     quiet(ui, spoken(side.seconds)).on_hover_text("Rendering time of the picture that is shown");
-    quiet(ui, format!("{evaluations:.1} evaluations a ray"))
-        .on_hover_text("Evaluations of the field, of all stages, for each primary ray");
     if is_long {
+        quiet(ui, format!("{evaluations:.1} evaluations a ray"))
+            .on_hover_text("Evaluations of the field, of all stages, for each primary ray");
         quiet(ui, format!("{width} x {height}"))
             .on_hover_text("Pixels of the picture that is shown");
     }
@@ -55,6 +72,15 @@ fn figures(ui: &mut Ui, side: &Exposed, is_long: bool) {
             samples => format!("{samples} rays a pixel"),
         },
     );
+    let left_out = match side.rung.draft {
+        Draft::Whole => None,
+        Draft::Unoccluded => Some("without occlusion"),
+        Draft::Shadowless => Some("without shadows"),
+    };
+    if let Some(what) = left_out {
+        quiet(ui, what.to_owned())
+            .on_hover_text("Left out as long as something moves, to be there in time");
+    }
     if let Some(convergence) = side.convergence {
         quiet(ui, noise(&convergence)).on_hover_text(
             "95 of 100 pixels are so near to what they converge to, as a share of white, and what is wanted",

@@ -195,7 +195,7 @@ fn keys_do_what_the_list_says() {
     assert!(harness.query_by_label("Keys and mouse").is_some());
     press(&mut harness, Key::Escape);
     press(&mut harness, Key::P);
-    assert!(harness.query_by_label("Marching").is_none());
+    assert!(harness.query_by_label("Methods").is_none());
     let before = harness.state().session().rig;
     harness.key_down(Key::W);
     harness.step();
@@ -291,15 +291,85 @@ fn tab_goes_through_every_control() {
         "Help",
         "Panel",
         "bite",
-        "March",
+        "Front",
+        "Azimuth",
+        "Exposure",
     ];
     assert!(order.is_sorted_by_key(|name| place(name)), "{seen:?}");
     let names: HashSet<&str> = seen.iter().map(|(_, name)| name.as_str()).collect();
     for name in [
-        "Compare", "Slice", "Save…", "Help", "bite", "style", "March", "Exposure", "Play",
+        "Compare",
+        "Slice",
+        "Save…",
+        "Help",
+        "bite",
+        "style",
+        "Elevation",
+        "Exposure",
+        "Good",
+        "Play",
     ] {
         assert!(names.contains(name), "{name} is not among {seen:?}");
     }
+}
+
+/// In a small window the panel gives way: the picture keeps more than half of it, and nothing covers the panel.
+#[test]
+fn the_panel_gives_way() {
+    for (width, height) in [(520.0, 420.0), (480.0, 320.0), (700.0, 500.0)] {
+        let closed = Window::Closed(Some(Box::new(rendered(|_| {}))));
+        let mut harness = Harness::builder()
+            .with_size([width, height])
+            .with_max_steps(24)
+            .build_ui_state(Window::show, closed);
+        harness.run();
+        let picture = harness.get_by_role(Role::Image).rect();
+        let share = picture.width() / width;
+        assert!((0.55..0.7).contains(&share), "{picture:?} of {width}");
+        let slider = harness.get_by_role_and_label(Role::Slider, "bite").rect();
+        assert!(
+            picture.right() < slider.left() && slider.right() < width,
+            "{slider:?}"
+        );
+        if width < 600.0 {
+            assert!(harness.query_by_label("Save…").is_none());
+            harness.get_by_label("Menu").click();
+            harness.run_steps(6);
+            assert!(harness.query_by_label("Save…").is_some());
+        }
+    }
+}
+
+/// The axes in the corner look along themselves.
+#[test]
+fn the_axes_can_be_pressed() {
+    let mut harness = window(1.0);
+    for (name, way) in [("+x", glam::Vec3::X), ("-z", glam::Vec3::NEG_Z)] {
+        harness.get_by_label(&format!("Look from {name}")).click();
+        harness.run();
+        let back = harness.state().session().rig.camera().axes.z_axis;
+        assert!((back - way).length() < 1e-5, "{name}: {back}");
+    }
+}
+
+/// With the sun in hand, a drag moves it and leaves the camera alone.
+#[test]
+fn the_sun_is_dragged_over_the_picture() {
+    let mut harness = window(1.0);
+    harness.key_press(Key::L);
+    harness.run();
+    let before = harness.state().session().rig;
+    let place = |h: &Harness<'_, Window>| h.state().session().sun().unwrap().1.source;
+    let sun = place(&harness);
+    drag(
+        &mut harness,
+        PointerButton::Primary,
+        Modifiers::NONE,
+        (80.0, -30.0),
+    );
+    assert_eq!(harness.state().session().rig, before);
+    assert!(place(&harness) != sun);
+    assert!(harness.state().session().is_unwritten());
 }
 
 #[test]

@@ -15,6 +15,7 @@ pub(crate) mod gpu;
 pub(crate) mod import;
 pub(crate) mod init;
 pub(crate) mod mesh;
+pub(crate) mod set;
 pub(crate) mod slice;
 #[cfg(feature = "window")]
 pub(crate) mod view;

@@ -10,9 +10,13 @@ use std::io::{self, Write};
 use std::ops::Range;
 use std::path::Path;
 use std::time::Instant;
+use zeroset_language::load::Loaded;
 use zeroset_output::atomic::{probe, write_atomically};
 use zeroset_output::display;
 use zeroset_output::format::animation::{self, Animation, Kind, Timing};
+
+/// What is done with the scene of each frame before it is rendered; where that fails, the animation ends.
+pub(crate) type Prepare<'a> = &'a dyn Fn(&mut Loaded) -> Result<(), Failure>;
 
 /// Renders all frames into one file.
 pub(crate) fn run(
@@ -20,6 +24,7 @@ pub(crate) fn run(
     path: &Path,
     clip: Clip,
     frames: &Range<u32>,
+    prepare: Prepare<'_>,
 ) -> Result<(), Failure> {
     let start = Instant::now();
     let is_piped = path == Path::new(STDOUT);
@@ -39,6 +44,7 @@ pub(crate) fn run(
         job,
         path,
         frames,
+        prepare,
         document: crate::scene::document(&job.args.scene, &job.options)?,
         unfinished: false,
     };
@@ -103,6 +109,7 @@ struct Movie<'a, 'j> {
     job: &'a Job<'j>,
     path: &'a Path,
     frames: &'a Range<u32>,
+    prepare: Prepare<'a>,
     document: zeroset_language::document::Document,
     unfinished: bool,
 }
@@ -122,7 +129,9 @@ impl Movie<'_, '_> {
             let mut options = job.options.clone();
             options.time += f64::from(number) / job.args.fps;
             let scene = &job.args.scene;
-            let loaded = crate::scene::evaluated(scene, &mut self.document, &options, job.console)?;
+            let mut loaded =
+                crate::scene::evaluated(scene, &mut self.document, &options, job.console)?;
+            (self.prepare)(&mut loaded)?;
             if number == self.frames.start && self.frames.len() > 1 && !loaded.animated {
                 job.console
                     .note("The scene does not use time(): all frames will be the same.");

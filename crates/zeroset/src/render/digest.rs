@@ -34,7 +34,7 @@ impl Digest {
 }
 
 /// A digest of the contents of files, in their order; their names and places have no part in it.
-pub(super) fn of_files(files: &[PathBuf]) -> String {
+pub(crate) fn of_files(files: &[PathBuf]) -> String {
     let mut digest = Digest::new();
     for file in files {
         let mut length = 0;

@@ -2,7 +2,7 @@
 
 mod again;
 mod animate;
-mod digest;
+pub(crate) mod digest;
 mod ffmpeg;
 mod job;
 mod limited;
@@ -37,7 +37,9 @@ pub(crate) fn run(args: &RenderArgs, console: &Console) -> Result<(), Failure> {
             format!("{} is an animation", path.display()),
             "say which frames it has, for example --frames 0..60",
         )),
-        (Some(frames), Some((path, clip))) => animate::run(&job, path, clip, &frames.0),
+        (Some(frames), Some((path, clip))) => {
+            animate::run(&job, path, clip, &frames.0, &|_| Ok(()))
+        }
         _ if args.watch => watch::run(&job),
         (Some(frames), None) => run_frames(&job, frames.0.clone()),
         (None, None) => {
@@ -47,6 +49,29 @@ pub(crate) fn run(args: &RenderArgs, console: &Console) -> Result<(), Failure> {
                 None => Ok(()),
             }
         }
+    }
+}
+
+/// Renders an animation for a window: as [`run`] does with the same arguments, with a scene that is changed before each frame.
+#[cfg(feature = "window")]
+pub(crate) fn run_animation(
+    args: &RenderArgs,
+    prepare: animate::Prepare<'_>,
+    console: &Console,
+) -> Result<(), Failure> {
+    let job = Job::new(args, console)?;
+    match (&args.frames, &args.output) {
+        (Some(frames), Some(path)) => match Container::of(path)? {
+            Container::Clip(clip) => animate::run(&job, path, clip, &frames.0, prepare),
+            Container::Png | Container::Exr => Err(Failure::new(
+                Exit::Usage,
+                "end the name in .gif, .apng, .mp4, .webm or .y4m",
+            )),
+        },
+        _ => Err(Failure::new(
+            Exit::Usage,
+            "an animation has frames and a name",
+        )),
     }
 }
 

@@ -20,6 +20,7 @@ mod proof;
 mod reference;
 mod render;
 mod run;
+mod set;
 mod transparent;
 mod usage;
 mod watch;
