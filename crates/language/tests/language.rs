@@ -495,8 +495,9 @@ for k in (1, 1, 2):
     show(sphere().move(x = k), material(color = lambda p: vec3(k * p.x)))
     show(sphere().move(y = k), material(roughness = lambda p: s(k * p)))";
     let scene = scene(text).scene;
+    // the last one is the floor of a scene that says nothing of light
     let numbers: Vec<u16> = scene.objects().iter().map(|o| o.material).collect();
-    assert_eq!(numbers, [0, 1, 0, 1, 2, 3]);
+    assert_eq!(numbers, [0, 1, 0, 1, 2, 3, 4]);
 }
 
 /// A formula gives colours as they are written everywhere else.
