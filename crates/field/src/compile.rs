@@ -1,7 +1,7 @@
 //! From the tree to the list: lowering, sharing, registers.
 
 use crate::field::{Field, Node, Paint};
-use crate::formula::{Binary, Formula, FormulaStep, Guide};
+use crate::formula::{Binary, Formula, FormulaStep, Guide, Inner};
 use crate::placement::Placement;
 use crate::program::{Coat, CompileError, Limits, Program, Structure};
 use crate::repetition::{Polar, Repetition};
@@ -21,6 +21,10 @@ const FAR: f64 = 1e18;
 
 /// How many times larger a guide may make a value that is too small.
 const RAISED: f64 = 8.0;
+
+mod colours;
+
+pub(crate) use colours::{colour, with_colours};
 
 /// A step before registers are assigned: operands are the numbers of earlier steps.
 #[derive(Clone, Copy)]
@@ -98,19 +102,7 @@ fn lowered(
     guided: bool,
 ) -> Result<Program, CompileError> {
     let facts = field.facts();
-    let mut l = Lowering {
-        steps: Vec::new(),
-        params: Vec::new(),
-        grids: Vec::new(),
-        sides: Vec::new(),
-        known: HashMap::new(),
-        limits,
-        spatial,
-        coats: Vec::new(),
-        steep: false,
-        slope: 1.0,
-        guided,
-    };
+    let mut l = Lowering::new(limits, spatial, guided);
     let value = l.field(field, INPUT)?;
     let result = l.unit(field, value)?;
     let (places, coats) = places(&l.steps, &l.coats)?;
@@ -120,6 +112,7 @@ fn lowered(
         sides: l.sides,
         places,
         coats,
+        colours: Vec::new(),
     };
     Ok(Program {
         structure: Arc::new(structure),
@@ -136,7 +129,23 @@ fn lowered(
     })
 }
 
-impl Lowering<'_> {
+impl<'l> Lowering<'l> {
+    fn new(limits: &'l Limits, spatial: &'l [bool], guided: bool) -> Self {
+        Lowering {
+            steps: Vec::new(),
+            params: Vec::new(),
+            grids: Vec::new(),
+            sides: Vec::new(),
+            known: HashMap::new(),
+            limits,
+            spatial,
+            coats: Vec::new(),
+            steep: false,
+            slope: 1.0,
+            guided,
+        }
+    }
+
     fn emit(
         &mut self,
         operation: Operation,
@@ -461,15 +470,37 @@ impl Lowering<'_> {
     fn formula(&mut self, formula: &Formula, point: u32) -> Result<u32, CompileError> {
         let sides = sides(&formula.bounds());
         let inside = self.warp(code::CLAMP, point, &sides)?;
-        let mut values: Vec<u32> = Vec::with_capacity(formula.steps().len());
+        let values = self.formula_steps(formula.steps(), formula.fields(), inside)?;
+        let value = values
+            .last()
+            .copied()
+            .expect("Formula refuses formulas of nothing");
+        let value = self.change(
+            code::CONTINUE,
+            value,
+            point,
+            &[&sides[..], &[formula.slope()]].concat(),
+        )?;
+        match formula.guide().filter(|_| self.guided) {
+            Some(guide) => self.guided(guide, formula.slope(), value, point),
+            None => Ok(value),
+        }
+    }
+
+    /// The values of all steps of a formula at a point.
+    fn formula_steps(
+        &mut self,
+        steps: &[FormulaStep],
+        fields: &[Inner],
+        inside: u32,
+    ) -> Result<Vec<u32>, CompileError> {
+        let mut values: Vec<u32> = Vec::with_capacity(steps.len());
         // values that depend on a painted field, whose marks they keep
-        let mut painted: Vec<bool> = Vec::with_capacity(formula.steps().len());
-        for step in formula.steps() {
+        let mut painted: Vec<bool> = Vec::with_capacity(steps.len());
+        for step in steps {
             let depends = step.operands().any(|i| painted[i as usize]);
             painted.push(match *step {
-                FormulaStep::Field(i, _) => {
-                    formula.fields()[i as usize].field().facts().materials > 0
-                }
+                FormulaStep::Field(i, _) => fields[i as usize].field().facts().materials > 0,
                 _ => depends,
             });
             values.push(match *step {
@@ -490,29 +521,16 @@ impl Lowering<'_> {
                     }
                 }
                 FormulaStep::Noise(kind, q) => {
-                    let q = self.point(formula, q, &values, inside)?;
+                    let q = self.point(steps, q, &values, inside)?;
                     self.leaf(code::noise(kind), q, &[])?
                 }
                 FormulaStep::Field(i, q) => {
-                    let q = self.point(formula, q, &values, inside)?;
-                    self.field(formula.fields()[i as usize].field(), q)?
+                    let q = self.point(steps, q, &values, inside)?;
+                    self.field(fields[i as usize].field(), q)?
                 }
             });
         }
-        let value = values
-            .last()
-            .copied()
-            .expect("Formula refuses formulas of nothing");
-        let value = self.change(
-            code::CONTINUE,
-            value,
-            point,
-            &[&sides[..], &[formula.slope()]].concat(),
-        )?;
-        match formula.guide().filter(|_| self.guided) {
-            Some(guide) => self.guided(guide, formula.slope(), value, point),
-            None => Ok(value),
-        }
+        Ok(values)
     }
 
     /// A value whose sign is right, made about as large as the distance: no larger than what a guide and its slack leave open, and no smaller as
@@ -548,14 +566,14 @@ impl Lowering<'_> {
     /// The point that three steps of a formula are; `inside` is where the formula is evaluated.
     fn point(
         &mut self,
-        formula: &Formula,
+        steps: &[FormulaStep],
         q: [u32; 3],
         values: &[u32],
         inside: u32,
     ) -> Result<u32, CompileError> {
         let mut point = inside;
         for (k, step) in (0..3).zip(q) {
-            if formula.steps()[step as usize] != FormulaStep::Coordinate(k as u8) {
+            if steps[step as usize] != FormulaStep::Coordinate(k as u8) {
                 let value = values[step as usize];
                 point = self.emit(Operation::Put(k), value, point, &[])?;
             }

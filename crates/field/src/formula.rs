@@ -32,6 +32,7 @@ use zeroset_eval::PointNumber;
 use zeroset_number::Vec3;
 
 mod builder;
+mod colour;
 mod ease;
 mod function;
 mod guide;
@@ -40,6 +41,7 @@ pub(crate) mod print;
 
 pub use crate::proof::{Budget, Cause, Obstacle, ProofError};
 pub use builder::{BuildError, Builder, Expression, MAX_STEPS};
+pub use colour::{ColourFormula, ColourFormulaError};
 pub use ease::Ease;
 pub use function::{EASE, Function, ROTATE, WHERE, functions};
 pub use inner::Inner;
@@ -146,6 +148,15 @@ impl Steps {
     /// # Errors
     /// As for [`Steps::new`], and a field that is not among those given.
     pub fn with_fields(steps: Vec<FormulaStep>, fields: Vec<Inner>) -> Result<Steps, StepsError> {
+        Steps::checked(steps, fields, &mut [])
+    }
+
+    /// As [`Steps::with_fields`]; `kept` are steps, and are what these are called then.
+    pub(crate) fn checked(
+        steps: Vec<FormulaStep>,
+        fields: Vec<Inner>,
+        kept: &mut [u32],
+    ) -> Result<Steps, StepsError> {
         if steps.is_empty() {
             return Err(StepsError::Empty);
         }
@@ -174,8 +185,12 @@ impl Steps {
                 }
             }
         }
+        if let Some(operand) = kept.iter().copied().find(|k| *k as usize >= steps.len()) {
+            let step = steps.len();
+            return Err(StepsError::Operand { step, operand });
+        }
         let fields = Arc::from(fields);
-        let list = builder::without_whole_powers(steps, &fields)?;
+        let list = builder::without_whole_powers(steps, &fields, kept)?;
         Ok(Steps { list, fields })
     }
 
@@ -212,11 +227,17 @@ impl Steps {
 
     /// The value at `p`.
     pub fn eval<R: PointNumber>(&self, p: Vec3<R>) -> R {
+        let values = self.eval_all(p);
+        values[values.len() - 1]
+    }
+
+    /// The values of all steps at `p`.
+    pub(crate) fn eval_all<R: PointNumber>(&self, p: Vec3<R>) -> Vec<R> {
         let mut values: Vec<R> = Vec::with_capacity(self.list.len());
         for step in &self.list {
             values.push(step.eval(p, &values, &self.fields));
         }
-        values[values.len() - 1]
+        values
     }
 }
 

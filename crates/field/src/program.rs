@@ -9,6 +9,7 @@
 
 use crate::compile;
 use crate::field::Field;
+use crate::formula::ColourFormula;
 use std::sync::Arc;
 use zeroset_catalogue::bounds::{Aabb, Exactness};
 use zeroset_catalogue::entries::catalogue;
@@ -28,6 +29,9 @@ pub struct Structure {
     pub places: Code,
     /// Materials in the space of what they were painted on: see [`Program::compile_painted`].
     pub coats: Vec<Coat>,
+    /// Instructions of formulas of colours, each of which leaves red, green and blue in the place of the point: see
+    /// [`Program::with_colours`].
+    pub colours: Vec<Code>,
 }
 
 /// A material in the space of what it was painted on. A part that was painted and then moved to two places has two.
@@ -142,6 +146,19 @@ impl Program {
         spatial: &[bool],
     ) -> Result<Program, CompileError> {
         compile::compile(field, limits, spatial)
+    }
+
+    /// The same program, which also knows formulas of colours ([`Structure::colours`], in this order). Their numbers and grids come behind
+    /// its own, so that its own are where they were.
+    ///
+    /// # Errors
+    /// Formulas over the limits.
+    pub fn with_colours(
+        &self,
+        formulas: &[Arc<ColourFormula>],
+        limits: &Limits,
+    ) -> Result<Program, CompileError> {
+        compile::with_colours(self, formulas, limits)
     }
 
     /// What finds where a point lies in the spaces of coats. It has no result: [`Coat::place`] says where each is.

@@ -13,7 +13,7 @@ use zeroset_scene::camera::{Camera, Lens};
 use zeroset_scene::environment::Environment;
 use zeroset_scene::film::Plane;
 use zeroset_scene::light::{self, Fog, Light, Sky};
-use zeroset_scene::material::Material;
+use zeroset_scene::material::{Material, Pattern};
 use zeroset_scene::scene::{Object, Scene, SceneParts};
 use zeroset_scene::settings::{Settings, Shading, Shadow};
 
@@ -172,7 +172,18 @@ impl Draft {
     /// The number of a material; equal ones share it. `None` where there are too many.
     pub(crate) fn number(&mut self, material: &Material) -> Option<u16> {
         // equal text means equal numbers: floats are written so that they can be read back exactly
-        let key = serde_json::to_string(material).unwrap_or_default();
+        let mut key = serde_json::to_string(material).unwrap_or_default();
+        // which says of formulas only where they are
+        for (_, pattern) in material.patterns() {
+            for part in pattern.parts() {
+                if let Pattern::Formula { formula } = part {
+                    let fields: Vec<usize> = (formula.fields().iter())
+                        .map(|inner| inner.field().key())
+                        .collect();
+                    key += &format!("{:?}{:?}{fields:?}", formula.steps(), formula.results());
+                }
+            }
+        }
         if let Some(number) = self.numbers.get(&key) {
             return Some(*number);
         }

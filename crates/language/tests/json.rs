@@ -167,6 +167,9 @@ show(deep, material(color = stripes("red", "blue", (1, 2, 3)), emission = "lime"
 show(s.repeat((2, 0, 3), count = (5, 0, 7), vary = (0.1, 0.2, 0.3), seed = 9), noise(octaves = 3))
 show(box(0.1).move(x = 3).polar(12).paint("teal"), gradient(start = (1, 2, 3)))
 show(sphere().smooth_union(box(1), 0.2).onion(0.1), orbit())
+marble = material(color = lambda p: mix("red", "white", 0.5 + 0.5 * noise(3 * p)), roughness = lambda p: clamp(s(p) + p.x, 0, 1),
+    bump = checker(lambda p: p.x * pow(p.y, 3), stripes(0.5, lambda p: (p.x, s(p.zyx), 0.1)).turn(x = 20)))
+show(torus().paint(marble).move(y = 5), marble)
 camera(eye = (3, 2, 4.7), fov = 33.3)
 sun(direction = (0.1, -2, 0.3), color = "#fed")
 point_light((1, 2, 3), shadow = none())

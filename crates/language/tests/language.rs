@@ -487,6 +487,50 @@ fn every_method_can_be_written() {
     );
 }
 
+/// Materials of formulas are one where their formulas are, and others where not.
+#[test]
+fn formulas_tell_materials_apart() {
+    let text = "s = sphere(2)
+for k in (1, 1, 2):
+    show(sphere().move(x = k), material(color = lambda p: vec3(k * p.x)))
+    show(sphere().move(y = k), material(roughness = lambda p: s(k * p)))";
+    let scene = scene(text).scene;
+    // the last one is the floor of a scene that says nothing of light
+    let numbers: Vec<u16> = scene.objects().iter().map(|o| o.material).collect();
+    assert_eq!(numbers, [0, 1, 0, 1, 2, 3, 4]);
+}
+
+/// A formula gives colours as they are written everywhere else.
+#[test]
+fn a_formula_gives_srgb() {
+    let one = |words: &str| {
+        let text = format!("show(sphere(), material(color = {words}))");
+        scene(&text).scene.materials()[0].pattern.clone()
+    };
+    for (colour, by_formula) in [
+        ("(0.9, 0.7, 0.3)", "(0.9, 0.7, 0.3)"),
+        // what depends on the point takes the curve in its steps
+        ("(0.9, 0.7, 0.01)", "vec3(0.9, 0.7, 0.01) + 0 * p"),
+        ("\"tomato\"", "\"tomato\""),
+        ("\"tomato\"", "\"tomato\" if p.x < 1 else p"),
+        ("rgb(0.2, 1, 0)", "rgb(0.2, 1, 0)"),
+        ("hsv(200, 0.5, 0.7)", "hsv(200, 0.5, 0.7)"),
+    ] {
+        let Pattern::Solid { colour: plain } = one(colour) else {
+            panic!("{colour} is a colour")
+        };
+        let Pattern::Formula { formula } = one(&format!("lambda p: {by_formula}")) else {
+            panic!("{by_formula} is a formula")
+        };
+        let o = zeroset_number::F64(0.0);
+        let found = formula
+            .eval(zeroset_number::v3(o, o, o))
+            .map(|c| c.0 as f32);
+        let off = (Vec3::from(found) - plain).abs().max_element();
+        assert!(off < 1e-6, "{by_formula}: {found:?} instead of {plain}");
+    }
+}
+
 /// Glass without a colour of its own is clear; roughness and shininess follow from each other.
 #[test]
 fn materials_complete_what_is_left_out() {

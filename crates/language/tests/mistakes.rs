@@ -187,6 +187,52 @@ fn formulas() {
 }
 
 #[test]
+fn formulas_of_materials() {
+    cases(
+        "formulas_of_materials",
+        Language::Starlark,
+        &[
+            (
+                "a number where a colour is needed",
+                "show(sphere(), material(color = lambda p: p.x))",
+            ),
+            (
+                "a colour where a number is needed",
+                "show(sphere(), material(\n    roughness = lambda p: p,\n))",
+            ),
+            (
+                "a field where a colour is needed",
+                "show(sphere(), material(color = lambda p: sphere()))",
+            ),
+            (
+                "two numbers where a colour is needed",
+                "show(sphere(), material(color = lambda p: p.xy))",
+            ),
+            (
+                "nothing",
+                "def colour(p):\n    p.x\nshow(sphere(), material(color = colour))",
+            ),
+            (
+                "no colour",
+                "show(sphere(), material(color = lambda p: mix(\"rad\", \"white\", p.x)))",
+            ),
+            (
+                "colours of a choice, one of which is none",
+                "show(sphere(), material(color = lambda p: \"red\" if p.x > 0 else \"whit\"))",
+            ),
+            (
+                "a vector within a pattern",
+                "show(sphere(), checker(lambda p: p.xy, \"red\"))",
+            ),
+            (
+                "a number where heights are needed",
+                "show(sphere(), material(bump = 3))",
+            ),
+        ],
+    );
+}
+
+#[test]
 fn scenes() {
     cases(
         "scenes",

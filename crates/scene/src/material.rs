@@ -6,6 +6,7 @@ use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 use std::sync::Arc;
+use zeroset_field::formula::ColourFormula;
 
 /// A colour that may change over space. All colours are linear. Patterns lie in the space of what was painted: what is moved, turned,
 /// scaled, bent or repeated after it was painted takes its pattern along.
@@ -71,6 +72,13 @@ pub enum Pattern {
         /// Colours of the origin, the x = 0, y = 0 and z = 0 planes.
         colours: [Ink; 4],
     },
+    /// What a formula gives at the point. It is not averaged over a pixel. As a colour its numbers are clamped to 0 to 1; as
+    /// a height they are taken as they are.
+    Formula {
+        /// The formula, linear. Whoever reads a scene from a file brings it.
+        #[serde(skip, default = "black")]
+        formula: Arc<ColourFormula>,
+    },
     /// A pattern that was moved, turned or scaled: it shows at `p` what it shows at `rows p + offset` where it is not.
     Placed {
         /// The pattern.
@@ -80,6 +88,24 @@ pub enum Pattern {
         /// Added to its product with the point.
         offset: Vec3,
     },
+}
+
+fn black() -> Arc<ColourFormula> {
+    Arc::new(ColourFormula::black())
+}
+
+/// The formulas of materials, each once.
+pub fn formulas(materials: &[Material]) -> Vec<Arc<ColourFormula>> {
+    let mut all: Vec<Arc<ColourFormula>> = Vec::new();
+    let patterns = materials.iter().flat_map(Material::patterns);
+    for part in patterns.flat_map(|(_, pattern)| pattern.parts()) {
+        if let Pattern::Formula { formula } = part
+            && !all.iter().any(|known| Arc::ptr_eq(known, formula))
+        {
+            all.push(Arc::clone(formula));
+        }
+    }
+    all
 }
 
 /// What a pattern shows somewhere: a colour, or another pattern.
@@ -136,7 +162,10 @@ impl Pattern {
             | Pattern::Noise { colours, .. }
             | Pattern::Gradient { colours, .. } => colours,
             Pattern::Orbit { colours } => colours,
-            Pattern::Solid { .. } | Pattern::Triplanar { .. } | Pattern::Placed { .. } => &[],
+            Pattern::Solid { .. }
+            | Pattern::Triplanar { .. }
+            | Pattern::Formula { .. }
+            | Pattern::Placed { .. } => &[],
         }
     }
 
@@ -164,19 +193,33 @@ impl Pattern {
         &mut self,
         f: &mut impl FnMut(&mut Arc<Image>) -> Result<(), E>,
     ) -> Result<(), E> {
+        self.each_mut(&mut |part| match part {
+            Pattern::Triplanar { image, .. } => f(image),
+            _ => Ok(()),
+        })
+    }
+
+    /// Calls `f` with every pattern that it consists of, each before those that it shows, and these in their order.
+    ///
+    /// # Errors
+    /// That of `f`.
+    pub fn each_mut<E>(
+        &mut self,
+        f: &mut impl FnMut(&mut Pattern) -> Result<(), E>,
+    ) -> Result<(), E> {
+        f(self)?;
         let inks: &mut [Ink] = match self {
-            Pattern::Triplanar { image, .. } => return f(image),
-            Pattern::Placed { pattern, .. } => return pattern.images_mut(f),
+            Pattern::Placed { pattern, .. } => return pattern.each_mut(f),
             Pattern::Checker { colours, .. }
             | Pattern::Stripes { colours, .. }
             | Pattern::Noise { colours, .. }
             | Pattern::Gradient { colours, .. } => colours,
             Pattern::Orbit { colours } => colours,
-            Pattern::Solid { .. } => &mut [],
+            Pattern::Solid { .. } | Pattern::Triplanar { .. } | Pattern::Formula { .. } => &mut [],
         };
         for ink in inks {
             if let Ink::Pattern(pattern) = ink {
-                pattern.images_mut(f)?;
+                pattern.each_mut(f)?;
             }
         }
         Ok(())
@@ -197,7 +240,7 @@ impl Pattern {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Bump {
-    /// The height is the luminance of this.
+    /// The height is the luminance of this, or the value of its formula.
     pub pattern: Pattern,
     /// How high 1 is, scene units. Less than 0 is deep.
     pub depth: f32,

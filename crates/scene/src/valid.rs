@@ -322,6 +322,8 @@ fn pattern_part(pattern: &Pattern) -> Checked {
             number("sharpness", *sharpness, 1.0, 64.0)
         }
         Pattern::Orbit { colours: c } => colours(c),
+        // what it gives is clamped where it is shown
+        Pattern::Formula { .. } => Ok(()),
         // asked for with those that it is in: see `placements`
         Pattern::Placed { .. } => Ok(()),
     }

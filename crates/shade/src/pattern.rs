@@ -3,9 +3,13 @@
 use crate::light::luminance_of;
 use crate::sampling::basis;
 use crate::{each, parameters};
-use fearless_simd::{Simd, prelude::*};
+use fearless_simd::{Level, Simd, prelude::*};
+use std::cell::RefCell;
 use zeroset_catalogue::noise::gradient_noise;
-use zeroset_number::{Lanes, Ops, Real, Vec2, Vec3, v2, v3};
+use zeroset_catalogue::tape::{Code, Tape};
+use zeroset_eval::Workspace;
+use zeroset_field::formula::ColourFormula;
+use zeroset_number::{Data, Lanes, Ops, Real, Vec2, Vec3, v2, v3};
 use zeroset_scene::material::{Image, Ink, Pattern};
 
 /// A place on a surface, as far as its colour depends on it.
@@ -293,7 +297,75 @@ pub trait PerLane: Real<Scalar = f32> {
         normal: Vec3<Self>,
         f: impl Fn([f32; 3], [f32; 3]) -> [f32; 3],
     ) -> Vec3<Self>;
+
+    /// Red, green and blue of a formula, as it gives them.
+    fn formula(point: Vec3<Self>, formula: &ColourFormula) -> Vec3<Self>;
 }
+
+/// The most numbers that are treated at once.
+const WIDEST: usize = 16;
+
+thread_local! {
+    /// Registers of formulas.
+    static REGISTERS: RefCell<Workspace> = {
+        let code = Code { instructions: Vec::new(), registers: 3, result: 0 };
+        let tape = Tape { code: &code, data: &Data::default() };
+        RefCell::new(Workspace::new(tape, tape))
+    };
+}
+
+/// What a formula gives at points, a row for each coordinate, written over them.
+fn run_formula(formula: &ColourFormula, rows: &mut [[f32; WIDEST]; 3]) {
+    let tape = formula.tape();
+    REGISTERS.with_borrow_mut(|work| {
+        work.make_room(tape);
+        for (lane, row) in work.points_mut().iter_mut().zip(&*rows) {
+            lane.0[..WIDEST].copy_from_slice(row);
+        }
+        zeroset_number::at_level!(Level::new(), s => zeroset_eval::values(s, tape, work, WIDEST));
+        for (lane, row) in work.points().iter().zip(rows) {
+            row.copy_from_slice(&lane.0[..WIDEST]);
+        }
+    });
+}
+
+/// What is shown of a formula, as a colour or as a height. Where it has no value, that is magenta.
+#[inline(always)]
+pub(crate) fn formula_shown<R: PerLane>(
+    formula: &ColourFormula,
+    point: Vec3<R>,
+    heights: bool,
+) -> Vec3<R> {
+    let seen = R::formula(point, formula);
+    let [x, y, z] = seen.array().map(
+        #[inline(always)]
+        |c| c.abs().below(LARGEST_VALUE),
+    );
+    let known = x & y & z;
+    let (low, high) = if heights {
+        (-HIGHEST, HIGHEST)
+    } else {
+        (0.0, 1.0)
+    };
+    let (seen, unknown) = (seen.array(), UNKNOWN);
+    each(
+        #[inline(always)]
+        |k| R::choose(known, seen[k], seen[k].lit(unknown[k])).clamp(low, high),
+    )
+}
+
+/// What is shown where a formula has no value.
+pub const UNKNOWN: [f32; 3] = [1.0, 0.0, 1.0];
+
+/// Values of formulas from here on are none: infinity is one of them.
+pub const LARGEST_VALUE: f32 = 1e30;
+
+/// The largest height.
+pub const HIGHEST: f32 = 1e6;
+
+/// How fine the details of a formula are taken to be for the slopes of its heights, scene units: with [`BUMP_STEP`], the least step over
+/// which single precision still sees a slope.
+const FORMULA_DETAIL: f32 = 2e-3;
 
 impl PerLane for f32 {
     #[inline(always)]
@@ -304,6 +376,12 @@ impl PerLane for f32 {
     ) -> Vec3<f32> {
         let c = f(point.array(), normal.array());
         v3(c[0], c[1], c[2])
+    }
+
+    fn formula(point: Vec3<f32>, formula: &ColourFormula) -> Vec3<f32> {
+        let mut rows = point.array().map(|x| [x; WIDEST]);
+        run_formula(formula, &mut rows);
+        v3(rows[0][0], rows[1][0], rows[2][0])
     }
 }
 
@@ -322,6 +400,22 @@ impl<S: Simd> PerLane for Lanes<S> {
                 [n[0].0[i], n[1].0[i], n[2].0[i]],
             );
             (out.x.0[i], out.y.0[i], out.z.0[i]) = (c[0], c[1], c[2]);
+        }
+        out
+    }
+
+    #[inline(always)]
+    fn formula(point: Vec3<Self>, formula: &ColourFormula) -> Vec3<Self> {
+        let mut rows = [[0.0; WIDEST]; 3];
+        for (row, x) in rows.iter_mut().zip(point.array()) {
+            let (first, rest) = row.split_at_mut(S::f32s::LEN);
+            x.0.store_slice(first);
+            rest.fill(first[0]);
+        }
+        run_formula(formula, &mut rows);
+        let mut out = point;
+        for i in 0..S::f32s::LEN {
+            (out.x.0[i], out.y.0[i], out.z.0[i]) = (rows[0][i], rows[1][i], rows[2][i]);
         }
         out
     }
@@ -430,6 +524,7 @@ impl Texture {
             Pattern::Triplanar { size, image, .. } => {
                 *size / image.width.max(image.height).max(1) as f32
             }
+            Pattern::Formula { .. } => FORMULA_DETAIL,
             Pattern::Solid { .. } | Pattern::Orbit { .. } | Pattern::Placed { .. } => f32::INFINITY,
         };
         let longer = mapped_scale(frame.rows.map(parameters));
@@ -455,6 +550,12 @@ impl Texture {
     /// The linear colour at a place.
     #[inline(always)]
     pub fn colour<R: PerLane>(&self, at: &Place<R>) -> Vec3<R> {
+        self.shown(at, false)
+    }
+
+    /// What it shows at a place, as a colour or as a height, which formulas may give any value.
+    #[inline(always)]
+    fn shown<R: PerLane>(&self, at: &Place<R>, heights: bool) -> Vec3<R> {
         let (zero, one) = (at.width.lit(0.0), at.width.lit(1.0));
         if let [
             Part {
@@ -494,6 +595,10 @@ impl Texture {
                     |p, n| triplanar(image, *size, *sharpness, p, n),
                 );
                 sum = sum + seen * share;
+                continue;
+            }
+            if let Pattern::Formula { formula } = &part.pattern {
+                sum = sum + formula_shown(formula, here.point, heights) * share;
                 continue;
             }
             let of_inks = shares_of(&part.pattern, &here);
@@ -543,7 +648,7 @@ impl Texture {
                 point: here.point + by,
                 ..*here
             };
-            *height = luminance_of(self.colour(&place));
+            *height = luminance_of(self.shown(&place, true));
         }
         let [height, right, up] = heights;
         let run = step * scale;
@@ -564,7 +669,10 @@ fn shares_of<R: PerLane>(pattern: &Pattern, at: &Place<R>) -> [R; 4] {
         Pattern::Noise { size, octaves, .. } => noise(at, *size, *octaves as f32),
         Pattern::Gradient { from, to, .. } => gradient(at, parameters(*from), parameters(*to)),
         Pattern::Orbit { .. } => return orbit(at),
-        Pattern::Solid { .. } | Pattern::Triplanar { .. } | Pattern::Placed { .. } => {
+        Pattern::Solid { .. }
+        | Pattern::Triplanar { .. }
+        | Pattern::Formula { .. }
+        | Pattern::Placed { .. } => {
             return [one, zero, zero, zero];
         }
     };

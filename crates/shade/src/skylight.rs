@@ -19,12 +19,14 @@
 //! **Where the volume ends**, over [`MARGIN`] voxels around the box, it gives way to the field itself: a floor goes on for ever without a seam.
 
 use crate::occlusion::{EVANS, UP};
+use crate::pattern::formula_shown;
 use fearless_simd::{Level, Simd};
 use rayon::prelude::*;
 use std::sync::Arc;
 use zeroset_catalogue::bounds::Aabb;
 use zeroset_eval::{BATCH, Evaluator, Workspace};
 use zeroset_field::field::FieldError;
+use zeroset_field::formula::ColourFormula;
 use zeroset_field::program::{FLAT, Program};
 use zeroset_number::{Data, Grid, GridError, Real, Vec3, at_level, v3};
 use zeroset_scene::material::{Ink, Material, Pattern};
@@ -388,6 +390,7 @@ pub fn average(pattern: &Pattern) -> glam::Vec3 {
             let sum: glam::DVec3 = image.pixels.iter().map(|c| c.as_dvec3()).sum();
             (sum / image.pixels.len().max(1) as f64).as_vec3()
         }
+        Pattern::Formula { formula } => formula_average(formula),
         Pattern::Checker { .. }
         | Pattern::Stripes { .. }
         | Pattern::Noise { .. }
@@ -401,6 +404,25 @@ pub fn average(pattern: &Pattern) -> glam::Vec3 {
             inks.iter().map(ink).sum::<glam::Vec3>() / inks.len().max(1) as f32
         }
     }
+}
+
+/// The colour of a formula on average over a cube of side 2 around the origin, where most that is painted lies: at points that are spread
+/// evenly (the additive recurrence R3, Roberts 2018).
+fn formula_average(formula: &ColourFormula) -> glam::Vec3 {
+    const POINTS: u32 = 128;
+    const STEPS: [f64; 3] = [
+        0.819_172_513_396_164_4,
+        0.671_043_606_703_789_2,
+        0.549_700_477_901_960_8,
+    ];
+    let sum: glam::Vec3 = (1..=POINTS)
+        .map(|n| {
+            let [x, y, z] = STEPS.map(|step| ((f64::from(n) * step).fract() * 2.0 - 1.0) as f32);
+            let colour = formula_shown(formula, v3(x, y, z), false);
+            glam::Vec3::from(colour.array())
+        })
+        .sum();
+    sum / POINTS as f32
 }
 
 /// The places of a row of nodes of a mip.

@@ -129,6 +129,9 @@ fn constants() -> Vec<(&'static str, Value)> {
         // patterns
         ("LEAST_WEIGHT", Number(pattern::LEAST_WEIGHT)),
         ("BUMP_STEP", Number(pattern::BUMP_STEP)),
+        ("FORMULA_UNKNOWN", Vector(&pattern::UNKNOWN)),
+        ("FORMULA_LARGEST", Number(pattern::LARGEST_VALUE)),
+        ("FORMULA_HIGHEST", Number(pattern::HIGHEST)),
     ]
 }
 

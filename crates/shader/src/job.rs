@@ -7,6 +7,7 @@ use crate::source::{Key, number, pattern_kind, reach};
 use crate::texture;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
+use zeroset_field::formula::ColourFormula;
 use zeroset_field::program::{Limits, Program};
 use zeroset_number::Grid;
 use zeroset_scene::accumulator::Sum;
@@ -188,6 +189,8 @@ impl Parts {
         sky_before: Option<&Arc<SkyVolume>>,
     ) -> Result<Parts, RenderError> {
         let (program, region) = compiled(scene, limits)?;
+        let formulas = material::formulas(scene.materials());
+        let program = program.with_colours(&formulas, limits)?;
         let mut images = images(scene);
         if let Some(around) = around {
             images.extend([&around.image, &around.table, &around.glossy].map(Arc::clone));
@@ -451,6 +454,7 @@ fn tables(
         .zip(texture::starts(images))
         .collect();
     let is_path = matches!(scene.settings().integrator, Integrator::Path { .. });
+    let formulas = material::formulas(scene.materials());
     let clear = is_path || bounces(scene.settings()).is_some();
     let mut coats = Coat::all(scene, program);
     coats.push(Coat::new(&material::Material::default(), 0));
@@ -465,7 +469,7 @@ fn tables(
             let material = placed.map_or(number as u16, |coat| coat.material);
             let textures = *known.entry(material).or_insert_with(|| {
                 coat.textures()
-                    .map(|texture| push_texture(&mut table, texture, &places))
+                    .map(|texture| push_texture(&mut table, texture, &places, &formulas))
             });
             material_row(
                 coat,
@@ -693,6 +697,7 @@ fn push_texture(
     table: &mut Vec<[f32; 4]>,
     texture: Option<&Texture>,
     images: &HashMap<*const Image, u64>,
+    formulas: &[Arc<ColourFormula>],
 ) -> f32 {
     let Some(texture) = texture.filter(|t| !t.is_solid()) else {
         return 0.0;
@@ -704,13 +709,21 @@ fn push_texture(
     let first = table.len();
     let parts = texture.parts();
     for (number, part) in parts.iter().enumerate() {
-        push(table, part_row(part, parts.len() - number, images));
+        push(
+            table,
+            part_row(part, parts.len() - number, images, formulas),
+        );
     }
     first as f32
 }
 
 /// `count`: of the parts from this one on.
-fn part_row(part: &Part, count: usize, images: &HashMap<*const Image, u64>) -> TexturePart {
+fn part_row(
+    part: &Part,
+    count: usize,
+    images: &HashMap<*const Image, u64>,
+    formulas: &[Arc<ColourFormula>],
+) -> TexturePart {
     let inks = part.inks.map(|ink| match ink {
         PartInk::Colour(colour) => (colour.to_array(), 0.0),
         PartInk::Part(number) => ([0.0; 3], number as f32),
@@ -755,6 +768,10 @@ fn part_row(part: &Part, count: usize, images: &HashMap<*const Image, u64>) -> T
             [row.image_row, row.image_column] = texture::place(start);
             (row.size, row.detail) = (*size, *sharpness);
             (row.width, row.height) = (image.width as f32, image.height as f32);
+        }
+        Pattern::Formula { formula } => {
+            let number = formulas.iter().position(|f| Arc::ptr_eq(f, formula));
+            row.size = number.unwrap_or_default() as f32;
         }
         Pattern::Solid { .. } | Pattern::Orbit { .. } | Pattern::Placed { .. } => {}
     }

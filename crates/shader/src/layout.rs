@@ -404,7 +404,7 @@ shared! {
         kind: f32,
         /// Where a gradient ends.
         end: [f32; 3],
-        /// Size, scene units.
+        /// Size, scene units; the number of a formula.
         size: f32,
         /// First row of the matrix that leads to where it lies.
         x: [f32; 3],

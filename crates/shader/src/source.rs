@@ -219,7 +219,11 @@ impl Key {
 
     /// Whether the field or the sky has grids of samples.
     pub(crate) fn reads_grids(&self) -> bool {
-        let mut steps = self.structure.values.instructions.iter();
+        let structure = &self.structure;
+        let mut steps = { &structure.colours }
+            .iter()
+            .chain([&structure.values])
+            .flat_map(|code| &code.instructions);
         let skylight = self.occlusion.iter().filter_map(|case| case.stage);
         { skylight }.any(|stage| matches!(stage.name, "ao_skylight" | "ao_curvature"))
             || steps.any(|step| step.operation == Operation::Leaf(code::SAMPLED))
@@ -492,12 +496,15 @@ impl Key {
             "fn pattern_shares(part: TexturePart, at: Place) -> vec4f",
             "part.kind",
             (self.patterns.iter())
-                .filter(|case| !case.has_image)
+                .filter(|case| !case.call.is_empty())
                 .map(|case| (case.kind, case.call)),
             "vec4f(1.0, 0.0, 0.0, 0.0)",
         );
         if !has("pattern_triplanar") {
             text += include_str!("stage/pattern_no_image.wgsl");
+        }
+        if !has("pattern_formula") {
+            text += include_str!("stage/pattern_no_formula.wgsl");
         }
         // writing to a string cannot fail
         let _ = writeln!(
@@ -953,6 +960,7 @@ fn pattern(pattern: &Pattern) -> Option<Case> {
             &["projection_weights", "projection"],
         ),
         Pattern::Orbit { .. } => case(None, "pattern_orbit(at.orbit)", &["pattern_orbit"]),
+        Pattern::Formula { .. } => case(Some(stage!("pattern_formula")), "", &[]),
     }
 }
 
@@ -967,5 +975,6 @@ pub(crate) fn pattern_kind(pattern: &Pattern) -> u32 {
         Pattern::Triplanar { .. } => 5,
         Pattern::Orbit { .. } => 6,
         Pattern::Placed { .. } => 7,
+        Pattern::Formula { .. } => 8,
     }
 }

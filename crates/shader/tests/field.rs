@@ -197,6 +197,7 @@ fn structure(values: Vec<Instruction>, marks: Vec<Instruction>) -> Structure {
             result: 0,
         },
         coats: Vec::new(),
+        colours: Vec::new(),
     }
 }
 

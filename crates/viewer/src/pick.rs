@@ -93,6 +93,7 @@ fn described(material: &Material) -> String {
         Pattern::Gradient { .. } => "gradient",
         Pattern::Triplanar { .. } => "image",
         Pattern::Orbit { .. } => "orbit traps",
+        Pattern::Formula { .. } => "a formula",
         Pattern::Placed { .. } => "a pattern",
     };
     let mut words = vec![pattern.to_owned()];

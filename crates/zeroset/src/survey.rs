@@ -9,6 +9,7 @@ use zeroset_field::formula::{Formula, Ground};
 use zeroset_field::program::{Limits, Program};
 use zeroset_number::{Dual, F64, Vec3, v3};
 use zeroset_scene::camera::Camera;
+use zeroset_scene::material::Pattern;
 use zeroset_scene::scene::Scene;
 
 /// Rays that are sent through a solid to find its surface.
@@ -168,6 +169,62 @@ const SEQUENCE: [f64; 6] = [
     0.526_692_3,
 ];
 
+/// A formula of a material that gives something that is not shown as it is.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Clamped {
+    /// What it is of: the colour, the roughness.
+    pub what: &'static str,
+    /// The number of the material.
+    pub material: usize,
+    /// What it gives, linear; none where that is no number.
+    pub value: Option<f64>,
+    /// Where, in the coordinates of the formula.
+    pub at: [f64; 3],
+}
+
+/// Formulas of colours and of numbers from 0 to 1 that leave this range somewhere: each is asked at some points of the box of the scene.
+pub(crate) fn clamped(scene: &Scene) -> Vec<Clamped> {
+    const POINTS: u32 = 512;
+    let Some(bounds) = scene.finite_bounds() else {
+        return Vec::new();
+    };
+    let mut all = Vec::new();
+    for (number, material) in scene.materials().iter().enumerate() {
+        for (name, pattern) in material.patterns() {
+            let what = match name {
+                "pattern" => "colour",
+                "roughness_map" => "roughness",
+                "metallic_map" => "metal",
+                // heights may be anything
+                _ => continue,
+            };
+            for part in pattern.parts() {
+                let Pattern::Formula { formula } = part else {
+                    continue;
+                };
+                let found = (1..=POINTS).find_map(|n| {
+                    let p = [0, 1, 2].map(|k| {
+                        let share = (f64::from(n) * SEQUENCE[k]).fract();
+                        bounds.min[k] + share * (bounds.max[k] - bounds.min[k])
+                    });
+                    let values = formula.eval(at(p)).map(|x| x.0);
+                    // a hair, for the rounding of what is 1
+                    let outside = |x: &f64| !(-1e-6..=1.0 + 1e-6).contains(x);
+                    let value = values.into_iter().find(outside)?;
+                    Some(Clamped {
+                        what,
+                        material: number,
+                        value: value.is_finite().then_some(value),
+                        at: p,
+                    })
+                });
+                all.extend(found);
+            }
+        }
+    }
+    all
+}
+
 /// The smallest step that single precision tells apart where the camera looks, and the width of a pixel there, where the
 /// first is the larger part of the second.
 pub(crate) fn coarse(scene: &Scene) -> Option<(f64, f64)> {
@@ -241,6 +298,21 @@ mod tests {
         assert_eq!(wave("19.1"), None);
         let proven = scene("show(field(lambda p: length(p) - 1, size = 4))");
         assert_eq!(exceeded(&proven.objects()[0].field), None);
+    }
+
+    #[test]
+    fn formulas_that_leave_their_range_are_noticed() {
+        let found = |words: &str| clamped(&scene(&format!("show(sphere(), material({words}))")));
+        assert!(found("color = lambda p: (0.5 + 0.5 * p.x, 0.2, 0.2)").is_empty());
+        assert!(found("bump = lambda p: 3 * p.x").is_empty());
+        let [one] = &found("color = lambda p: (0.5 + 0.7 * p.x, 0.2, 0.2)")[..] else {
+            panic!("a colour out of range")
+        };
+        assert!(one.value.is_some_and(|x| !(0.0..=1.0).contains(&x)) && one.what == "colour");
+        let [none] = &found("roughness = lambda p: 1 / (p.x - p.x)")[..] else {
+            panic!("no number")
+        };
+        assert_eq!((none.what, none.value), ("roughness", None));
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Writing a formula down.
 
+use super::colour::{ColourFormula, ColourFormulaError};
 use super::inner::Inner;
 use super::print::{number, text};
 use super::{Binary, FormulaStep, LARGEST, NoiseKind, Steps, Unary};
@@ -300,17 +301,41 @@ impl Builder {
     /// # Errors
     /// The first mistake that was made, or a value that is a vector or belongs to another formula.
     pub fn finish(&self, value: &Expression) -> Result<Steps, BuildError> {
+        if value.parts() > 1 {
+            self.check()?;
+            let parts = value.parts();
+            return Err(BuildError::Vector { parts });
+        }
+        self.needed(value).map(|(steps, _)| steps)
+    }
+
+    /// The steps that three numbers need, red, green and blue, linear; or one, which is a grey of this luminance.
+    ///
+    /// # Errors
+    /// The first mistake that was made, a value of two or four parts or of another formula, or one that is too large to be compiled.
+    pub fn finish_colour(&self, value: &Expression) -> Result<ColourFormula, ColourFormulaError> {
+        let (steps, results) = self.needed(value)?;
+        match results[..] {
+            [red, green, blue] => ColourFormula::new(steps, [red, green, blue]),
+            [grey] => ColourFormula::new(steps, [grey; 3]),
+            _ => Err(ColourFormulaError::Parts {
+                parts: results.len(),
+            }),
+        }
+    }
+
+    /// The steps that the parts of a value need, in their order, and which of them they are.
+    fn needed(&self, value: &Expression) -> Result<(Steps, Vec<u32>), BuildError> {
         if !self.owns(value) {
             return Err(BuildError::Foreign);
         }
         self.check()?;
-        let &[last] = value.steps() else {
-            let parts = value.parts();
-            return Err(BuildError::Vector { parts });
-        };
         let state = self.state();
+        let last = value.steps().iter().copied().fold(0, u32::max);
         let mut used = vec![false; last as usize + 1];
-        used[last as usize] = true;
+        for step in value.steps() {
+            used[*step as usize] = true;
+        }
         for step in (0..used.len()).rev() {
             if used[step] {
                 for operand in state.steps[step].operands() {
@@ -340,10 +365,12 @@ impl Builder {
             }
         }
         let fields = numbers.iter().map(|n| state.fields[*n as usize].clone());
-        Ok(Steps {
+        let parts = value.steps().iter().map(|step| renamed[*step as usize]);
+        let steps = Steps {
             list: steps,
             fields: fields.collect(),
-        })
+        };
+        Ok((steps, parts.collect()))
     }
 
     /// Remembers a mistake; what is given back stands for the value that there is not.
@@ -377,10 +404,11 @@ fn whole(power: f64) -> Option<i32> {
     (power.fract() == 0.0 && power.abs() <= f64::from(i32::MAX)).then_some(power as i32)
 }
 
-/// Steps in which whole powers are written as products, as [`Builder`] writes them.
+/// Steps in which whole powers are written as products, as [`Builder`] writes them. `kept` are steps, and are what these are called then.
 pub(super) fn without_whole_powers(
     steps: Vec<FormulaStep>,
     fields: &[Inner],
+    kept: &mut [u32],
 ) -> Result<Vec<FormulaStep>, BuildError> {
     let is_whole = |step: &FormulaStep| match *step {
         FormulaStep::Binary(Binary::Pow, _, n) => {
@@ -409,7 +437,11 @@ pub(super) fn without_whole_powers(
             };
             names.push(name);
         }
-        names.last().copied().unwrap_or_default()
+        for step in kept.iter_mut() {
+            *step = names[*step as usize];
+        }
+        let last = names.last().copied().unwrap_or_default();
+        kept.iter().copied().fold(last, u32::max)
     };
     builder.check()?;
     let state = builder.state();

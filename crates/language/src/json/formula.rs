@@ -7,7 +7,7 @@ use zeroset_catalogue::LARGE;
 use zeroset_catalogue::bounds::Aabb;
 use zeroset_field::field::Field;
 use zeroset_field::formula::{
-    Binary, Budget, Formula, FormulaStep, Inner, NoiseKind, Steps, Unary,
+    Binary, Budget, ColourFormula, Formula, FormulaStep, Inner, NoiseKind, Steps, Unary,
 };
 
 /// Names of functions of one step.
@@ -63,17 +63,8 @@ fn name_of<T: PartialEq>(table: &[(&'static str, T)], what: &T) -> &'static str 
 
 /// A formula with its box and its slope.
 pub(super) fn write(formula: &Formula) -> Map<String, Value> {
-    let steps = formula.steps().iter().map(|step| match step {
-        FormulaStep::Constant(x) => json!(x),
-        FormulaStep::Coordinate(k) => json!(COORDINATES.get(usize::from(*k))),
-        FormulaStep::Unary(f, a) => json!([name_of(UNARY, f), a]),
-        FormulaStep::Binary(f, a, b) => json!([name_of(BINARY, f), a, b]),
-        FormulaStep::Noise(kind, [a, b, c]) => json!([name_of(NOISE, kind), a, b, c]),
-        // the number of the field among `of`, then the point
-        FormulaStep::Field(i, [a, b, c]) => json!(["of", i, a, b, c]),
-    });
     let mut body = Map::new();
-    body.insert("steps".into(), steps.collect());
+    body.insert("steps".into(), written(formula.steps()));
     let mut bounds = formula.bounds();
     let plane = formula.dimension() == Dimension::Two;
     if plane {
@@ -90,21 +81,22 @@ pub(super) fn write(formula: &Formula) -> Map<String, Value> {
     body
 }
 
+fn written(steps: &[FormulaStep]) -> Value {
+    let steps = steps.iter().map(|step| match step {
+        FormulaStep::Constant(x) => json!(x),
+        FormulaStep::Coordinate(k) => json!(COORDINATES.get(usize::from(*k))),
+        FormulaStep::Unary(f, a) => json!([name_of(UNARY, f), a]),
+        FormulaStep::Binary(f, a, b) => json!([name_of(BINARY, f), a, b]),
+        FormulaStep::Noise(kind, [a, b, c]) => json!([name_of(NOISE, kind), a, b, c]),
+        // the number of the field among `of`, then the point
+        FormulaStep::Field(i, [a, b, c]) => json!(["of", i, a, b, c]),
+    });
+    steps.collect()
+}
+
 /// A formula from its steps, its box, and its slope if that is stated rather than looked for.
 pub(super) fn read(body: &Map<String, Value>, fields: &[Field]) -> Read<Formula> {
-    let steps = body.get("steps").and_then(Value::as_array);
-    let steps = steps.ok_or_else(|| problem("a formula needs `steps`, a list"))?;
-    let each = |(i, v)| step(v).map_err(|p| p.within(JsonStep::Index(i)).at("steps"));
-    let steps = steps
-        .iter()
-        .enumerate()
-        .map(each)
-        .collect::<Read<Vec<FormulaStep>>>()?;
-    let fields = fields
-        .iter()
-        .map(Inner::new)
-        .collect::<Result<Vec<Inner>, _>>();
-    let fields = fields.map_err(|e| problem(e.to_string()).at("of"))?;
+    let (steps, fields) = listed(body, fields)?;
     let steps =
         Steps::with_fields(steps, fields).map_err(|e| problem(e.to_string()).at("steps"))?;
     let corner = |v: Option<&Value>| {
@@ -138,6 +130,93 @@ pub(super) fn read(body: &Map<String, Value>, fields: &[Field]) -> Read<Formula>
         false => formula,
     };
     formula.map_err(|e| problem(e.to_string()))
+}
+
+/// The steps of a body, and the fields whose values they take.
+fn listed(body: &Map<String, Value>, fields: &[Field]) -> Read<(Vec<FormulaStep>, Vec<Inner>)> {
+    let steps = body.get("steps").and_then(Value::as_array);
+    let steps = steps.ok_or_else(|| problem("a formula needs `steps`, a list"))?;
+    let each = |(i, v)| step(v).map_err(|p| p.within(JsonStep::Index(i)).at("steps"));
+    let steps = steps
+        .iter()
+        .enumerate()
+        .map(each)
+        .collect::<Read<Vec<FormulaStep>>>()?;
+    let fields = fields
+        .iter()
+        .map(Inner::new)
+        .collect::<Result<Vec<Inner>, _>>();
+    let fields = fields.map_err(|e| problem(e.to_string()).at("of"))?;
+    Ok((steps, fields))
+}
+
+/// A formula of colours, beside its fields.
+pub(super) fn write_colour(formula: &ColourFormula) -> Map<String, Value> {
+    let mut body = Map::new();
+    body.insert("steps".into(), written(formula.steps()));
+    body.insert("results".into(), json!(formula.results()));
+    body
+}
+
+/// The members of a formula of colours that are not left to the pattern that it is.
+pub(super) const COLOUR_MEMBERS: [&str; 3] = ["steps", "results", "of"];
+
+/// A formula of colours from its steps, and the numbers of those that are red, green and blue.
+pub(super) fn read_colour(body: &Map<String, Value>, fields: &[Field]) -> Read<ColourFormula> {
+    let (steps, fields) = listed(body, fields)?;
+    let number = |v: &Value| v.as_u64().and_then(|n| u32::try_from(n).ok());
+    let results = match body
+        .get("results")
+        .and_then(Value::as_array)
+        .map(Vec::as_slice)
+    {
+        Some([r, g, b]) => number(r).zip(number(g)).zip(number(b)),
+        _ => None,
+    };
+    let ((r, g), b) = results.ok_or_else(|| {
+        problem("a formula of colours needs `results`, the numbers of three steps")
+    })?;
+    ColourFormula::of_steps(steps, fields, [r, g, b]).map_err(|e| problem(e.to_string()))
+}
+
+/// Calls `f` with every formula within a pattern, in the order of [`Pattern::each_mut`](zeroset_scene::material::Pattern::each_mut), and
+/// with the way there.
+pub(super) fn each_formula<'v>(
+    pattern: &'v Value,
+    way: &mut Vec<JsonStep>,
+    f: &mut impl FnMut(&[JsonStep], &'v Map<String, Value>) -> Read<()>,
+) -> Read<()> {
+    let Some(map) = pattern.as_object() else {
+        return Ok(());
+    };
+    if map.get("kind").and_then(Value::as_str) == Some("formula") {
+        return f(way, map);
+    }
+    if let Some(inner) = map.get("pattern") {
+        way.push(JsonStep::Key("pattern".into()));
+        each_formula(inner, way, f)?;
+        way.pop();
+    }
+    if let Some(inks) = map.get("colours").and_then(Value::as_array) {
+        way.push(JsonStep::Key("colours".into()));
+        for (i, ink) in inks.iter().enumerate() {
+            way.push(JsonStep::Index(i));
+            each_formula(ink, way, f)?;
+            way.pop();
+        }
+        way.pop();
+    }
+    Ok(())
+}
+
+/// Calls `f` with every formula within a value that is a pattern or holds some.
+pub(super) fn each_formula_mut(value: &mut Value, f: &mut impl FnMut(&mut Map<String, Value>)) {
+    match value {
+        Value::Object(map) if map.get("kind").and_then(Value::as_str) == Some("formula") => f(map),
+        Value::Object(map) => map.values_mut().for_each(|v| each_formula_mut(v, f)),
+        Value::Array(items) => items.iter_mut().for_each(|v| each_formula_mut(v, f)),
+        _ => {}
+    }
 }
 
 fn step(value: &Value) -> Read<FormulaStep> {

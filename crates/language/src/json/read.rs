@@ -1,5 +1,6 @@
 //! From JSON to a scene.
 
+use super::formula::{COLOUR_MEMBERS, each_formula, each_formula_mut};
 use super::parse::parse;
 use super::valid;
 use super::{JsonStep, KEY, NAME, Problem, Read, VERSION, angle_name, is_angle, problem};
@@ -21,13 +22,14 @@ use std::sync::Arc;
 use zeroset_catalogue::entries::catalogue;
 use zeroset_catalogue::{Dimension, Info, Kind, LARGE, Param, SMALL, Unit};
 use zeroset_field::field::{Field, FieldError, Paint};
+use zeroset_field::formula::ColourFormula;
 use zeroset_field::placement::Placement;
 use zeroset_field::repetition::{Polar, Repetition};
 use zeroset_field::sampled::Source as SampledSource;
 use zeroset_scene::colour;
 use zeroset_scene::environment::{Environment, Surroundings};
 use zeroset_scene::light::{Light, Sky};
-use zeroset_scene::material::Material;
+use zeroset_scene::material::{Material, Pattern};
 use zeroset_scene::scene::Object;
 use zeroset_scene::settings::{Occlusion, Settings};
 use zeroset_volume::bake::Bake;
@@ -251,6 +253,14 @@ impl Reader {
             }
             Ok(())
         })?;
+        member(map, "materials", |v| {
+            let materials = list(v, "materials")?.iter().zip(&mut draft.materials);
+            for (i, (v, material)) in materials.enumerate() {
+                self.formulas(v, material)
+                    .map_err(|p| p.within(JsonStep::Index(i)))?;
+            }
+            Ok(())
+        })?;
         let objects = member(map, "objects", |v| {
             let items = list(v, "objects")?;
             let most = limits.objects.min(u64::from(u16::MAX));
@@ -337,7 +347,13 @@ impl Reader {
     }
 
     fn material(&self, value: &Value, draft: &mut Draft) -> Read<Material> {
-        let mut material: Material = data(value)?;
+        let mut bare = value.clone();
+        each_formula_mut(&mut bare, &mut |body| {
+            for name in COLOUR_MEMBERS {
+                body.remove(name);
+            }
+        });
+        let mut material: Material = data(&bare)?;
         valid::material(&material)?;
         for (name, pattern) in material.patterns_mut() {
             pattern.images_mut(&mut |image| -> Read<()> {
@@ -347,6 +363,47 @@ impl Reader {
             })?;
         }
         Ok(material)
+    }
+
+    /// Brings the formulas of materials, which may use parts.
+    fn formulas(&mut self, value: &Value, material: &mut Material) -> Read<()> {
+        for (name, pattern) in material.patterns_mut() {
+            let (value, mut way) = match name {
+                "bump" => (
+                    value.get(name).and_then(|bump| bump.get("pattern")),
+                    vec![JsonStep::Key(name.into()), JsonStep::Key("pattern".into())],
+                ),
+                _ => (value.get(name), vec![JsonStep::Key(name.into())]),
+            };
+            let Some(value) = value else { continue };
+            let mut read = Vec::new();
+            each_formula(value, &mut way, &mut |way, body| {
+                let formula = self
+                    .colour_formula(body)
+                    .map_err(|p| (way.iter().rev()).fold(p, |p, step| p.within(step.clone())))?;
+                read.push(Arc::new(formula));
+                Ok(())
+            })?;
+            let mut read = read.into_iter();
+            pattern.each_mut(&mut |part| -> Read<()> {
+                if let Pattern::Formula { formula } = part
+                    && let Some(read) = read.next()
+                {
+                    *formula = read;
+                }
+                Ok(())
+            })?;
+        }
+        Ok(())
+    }
+
+    fn colour_formula(&mut self, body: &Map<String, Value>) -> Read<ColourFormula> {
+        self.check_clock()?;
+        let fields = match body.get("of") {
+            Some(of) => self.all_of(Some(of), "formula")?,
+            None => Vec::new(),
+        };
+        super::formula::read_colour(body, &fields)
     }
 
     fn object(

@@ -1,14 +1,18 @@
 //! From a scene to JSON.
 
+use super::formula::{each_formula_mut, write_colour};
 use super::{NAME, VERSION, angle_name};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::collections::HashMap;
+use std::convert::Infallible;
+use std::sync::Arc;
 use zeroset_catalogue::{Info, Kind, Unit};
 use zeroset_field::field::{Field, Node, Paint};
 use zeroset_field::placement::Placement;
 use zeroset_field::sampled::Source;
 use zeroset_scene::camera::{Camera, Lens, degrees_of};
+use zeroset_scene::material::{Material, Pattern, formulas};
 use zeroset_scene::scene::Scene;
 
 /// Levels of a field that are written into each other; what lies deeper becomes a part of its own.
@@ -36,6 +40,9 @@ impl ExpandError {
 pub fn expand(scene: &Scene) -> Result<Value, ExpandError> {
     let mut writer = Writer::default();
     (scene.objects().iter()).for_each(|object| writer.count(&object.field));
+    for formula in formulas(scene.materials()) {
+        (formula.fields().iter()).for_each(|inner| writer.count(inner.field()));
+    }
     if writer.has_samples {
         return Err(ExpandError::new(
             "a field of samples that come from no file has no word there",
@@ -53,6 +60,9 @@ pub fn expand(scene: &Scene) -> Result<Value, ExpandError> {
             Value::Object(out)
         })
         .collect();
+    let materials: Vec<Value> = (scene.materials().iter())
+        .map(|material| writer.material(material))
+        .collect();
     let mut out = Map::new();
     out.insert(NAME.into(), json!(VERSION));
     out.insert("name".into(), json!(scene.name()));
@@ -60,7 +70,7 @@ pub fn expand(scene: &Scene) -> Result<Value, ExpandError> {
         out.insert("parts".into(), Value::Array(writer.parts));
     }
     out.insert("objects".into(), Value::Array(objects));
-    out.insert("materials".into(), plain(scene.materials()));
+    out.insert("materials".into(), Value::Array(materials));
     out.insert("lights".into(), plain(scene.lights()));
     out.insert("sky".into(), plain(scene.sky()));
     if let Some(environment) = scene.environment() {
@@ -160,6 +170,39 @@ impl Writer {
                 matches!(field.node(), Node::Sampled(samples) if samples.source().is_none());
             field.children().iter().for_each(|c| self.count(c));
         }
+    }
+
+    /// A material with its formulas.
+    fn material(&mut self, material: &Material) -> Value {
+        let mut out = plain(material);
+        for (name, pattern) in material.patterns() {
+            let mut formulas = Vec::new();
+            // those of a pattern are told in the order in which they stand
+            let _ = pattern
+                .clone()
+                .each_mut(&mut |part| -> Result<(), Infallible> {
+                    if let Pattern::Formula { formula } = part {
+                        formulas.push(Arc::clone(formula));
+                    }
+                    Ok(())
+                });
+            let mut formulas = formulas.into_iter();
+            let Some(value) = out.get_mut(name) else {
+                continue;
+            };
+            each_formula_mut(value, &mut |body| {
+                let Some(formula) = formulas.next() else {
+                    return;
+                };
+                body.append(&mut write_colour(&formula));
+                if !formula.fields().is_empty() {
+                    let fields = formula.fields().iter();
+                    let fields = fields.map(|inner| self.field(inner.field(), 0));
+                    body.insert("of".into(), fields.collect());
+                }
+            });
+        }
+        out
     }
 
     /// A field, `level` levels inside of the part or object that holds it.

@@ -207,6 +207,18 @@ fn written(
     gives: &str,
     end: impl FnOnce(&Builder, Expression) -> Expression,
 ) -> Run<Steps> {
+    let (builder, value) = given_by(c, f, flat, gives)?;
+    let value = end(&builder, value);
+    builder.finish(&value).map_err(|e| told(&e).at(f.place))
+}
+
+/// What a function of a point gives, and the formula that this is written down in.
+pub(super) fn given_by(
+    c: &mut Call<'_, '_>,
+    f: Given,
+    flat: bool,
+    gives: &str,
+) -> Run<(Builder, Expression)> {
     let builder = Builder::new();
     let point = builder.point();
     let point = match flat.then(|| point.swizzle("xy")).flatten() {
@@ -227,12 +239,14 @@ fn written(
         ));
         return Err(match result {
             Value::None => m.help("a function gives what follows `return`"),
+            Value::Thing(i) if matches!(c.machine.store.thing(i), Thing::Field(_)) => {
+                m.help("a field is asked for its value at a point: s(p)")
+            }
             _ => m,
         }
         .at(f.place));
     };
-    let value = end(&builder, value);
-    builder.finish(&value).map_err(|e| told(&e).at(f.place))
+    Ok((builder, value))
 }
 
 fn field(c: &mut Call<'_, '_>, flat: bool) -> Run<Value> {
@@ -736,11 +750,14 @@ impl<'a> Machine<'a> {
         })
     }
 
-    /// A number, a tuple of numbers, or a value of the formula as a value of the formula; `None` for anything else.
+    /// A number, a tuple of numbers, the name of a colour, or a value of the formula as a value of the formula; `None` for anything else.
     pub(crate) fn operand(&self, builder: &Builder, value: Value) -> Run<Option<Expression>> {
         Ok(match value {
             Value::Int(i) => Some(builder.constant(i as f64)),
             Value::Float(x) => Some(builder.constant(x)),
+            Value::Text(i) => crate::colour::parse(self.store.text(i))
+                .ok()
+                .map(|parts| builder.vector(&parts.map(|x| builder.constant(x)))),
             Value::List(_) | Value::Tuple(_) => {
                 let items = self.store.items(value).unwrap_or_default();
                 if !(2..=4).contains(&items.len()) {
@@ -860,8 +877,20 @@ impl<'a> Machine<'a> {
                 })?,
             };
             let value = self.operand(&builder, argument.value)?.ok_or_else(|| {
-                let kind = self.store.kind(argument.value);
-                mistake(format!("{}() needs numbers, not {kind}", function.name)).at(argument.place)
+                let wrong = match argument.value {
+                    Value::Text(i) => {
+                        let text = self.store.text(i);
+                        format!(
+                            "{}() needs numbers or colours, and \"{text}\" is none",
+                            function.name
+                        )
+                    }
+                    other => {
+                        let kind = self.store.kind(other);
+                        format!("{}() needs numbers, not {kind}", function.name)
+                    }
+                };
+                mistake(wrong).at(argument.place)
             })?;
             if sorted[at].replace(value).is_some() {
                 let message = format!("{}() is given an argument twice", function.name);

@@ -1,5 +1,6 @@
 //! Colours, patterns and materials.
 
+use super::colours::Shown;
 use super::mistake::{Run, mistake};
 use super::native::{Call, Given, Native, Slot, slot, spoken};
 use super::place::{MOVE, TURN, coordinates, each_axis, turned};
@@ -23,7 +24,7 @@ macro_rules! function {
 const A: Slot = slot(
     "a",
     "\"#e8e8e8\"",
-    "The one colour, a pattern in its place, or a number for what is no colour.",
+    "The one colour, a pattern or a function in its place, or a number for what is no colour.",
 );
 const B: Slot = slot("b", "\"#404040\"", "The other one.");
 const SIZE: Slot = slot("size", "1", "Size, scene units.");
@@ -38,17 +39,17 @@ pub(crate) const ALL: &[Native] = &[
             slot(
                 "color",
                 "\"#cbc8c4\"",
-                "A colour or a pattern; white where it transmits."
+                "A colour, a pattern, or a function of a point that gives a colour; white where it transmits."
             ),
             slot(
                 "metallic",
                 "0",
-                "0 plastic or stone, 1 metal; or a pattern of numbers."
+                "0 plastic or stone, 1 metal; or a pattern of numbers, or a function."
             ),
             slot(
                 "roughness",
                 "0.5",
-                "0 mirror, 1 chalk, or a pattern of numbers; from `shininess` where that alone is given."
+                "0 mirror, 1 chalk, or a pattern of numbers, or a function; from `shininess` where that alone is given."
             ),
             slot(
                 "specular",
@@ -81,7 +82,7 @@ pub(crate) const ALL: &[Native] = &[
             slot(
                 "bump",
                 "None",
-                "A pattern of heights, 0 to 1, that the surface is shown with as if it had them."
+                "A pattern of heights, 0 to 1, or a function of any, that the surface is shown with as if it had them."
             ),
             slot(
                 "bump_depth",
@@ -302,10 +303,13 @@ impl Call<'_, '_> {
     }
 
     /// What a pattern shows: a colour, a number as a grey of this luminance, or another pattern. Or a default.
-    fn ink_or(&self, param: &str, default: &str) -> Run<Ink> {
+    fn ink_or(&mut self, param: &str, default: &str) -> Run<Ink> {
         let Some(given) = self.get(param) else {
             return Ok(self.colour_or(param, default)?.into());
         };
+        if let Some(formula) = self.formula_pattern(param, given, Shown::Either)? {
+            return Ok(formula.into());
+        }
         match given.value {
             Value::Int(_) | Value::Float(_) => {
                 let grey = self.ranged(param, given, 0.0, 1.0)? as f32;
@@ -320,7 +324,7 @@ impl Call<'_, '_> {
     }
 
     /// A number, or a pattern of numbers.
-    fn number_or_map(&self, param: &str, default: f32) -> Run<(Option<f32>, Option<Pattern>)> {
+    fn number_or_map(&mut self, param: &str, default: f32) -> Run<(Option<f32>, Option<Pattern>)> {
         if let Some(pattern) = self.pattern(param)? {
             return Ok((None, Some(pattern)));
         }
@@ -328,15 +332,17 @@ impl Call<'_, '_> {
         Ok((self.get(param).is_some().then_some(number), None))
     }
 
-    /// A pattern, if that is what was given.
-    fn pattern(&self, param: &str) -> Run<Option<Pattern>> {
-        let Some(Value::Thing(i)) = self.get(param).map(|given| given.value) else {
+    /// A pattern of numbers or a function that gives one, if that is what was given.
+    fn pattern(&mut self, param: &str) -> Run<Option<Pattern>> {
+        let Some(given) = self.get(param) else {
             return Ok(None);
         };
-        match self.machine.store.thing(i) {
-            Thing::Pattern(pattern) => Ok(Some(pattern.clone())),
-            _ => Ok(None),
+        if let Value::Thing(i) = given.value
+            && let Thing::Pattern(pattern) = self.machine.store.thing(i)
+        {
+            return Ok(Some(pattern.clone()));
         }
+        self.formula_pattern(param, given, Shown::Number)
     }
 
     /// A colour, linear, or a default.
@@ -357,30 +363,34 @@ fn material(c: &mut Call<'_, '_>) -> Run<Value> {
         // what lets light through colours it by its tint
         None if transmission > 0.0 => Pattern::Solid { colour: Vec3::ONE },
         None => default.pattern,
-        Some(given) => match given.value {
-            Value::Thing(i) => match c.machine.store.thing(i) {
-                Thing::Pattern(pattern) => pattern.clone(),
-                _ => return Err(c.unfit("color", "a colour or a pattern", given)),
-            },
-            _ => Pattern::Solid {
-                colour: c.colour("color", given)?,
+        Some(given) => match c.formula_pattern("color", given, Shown::Colour)? {
+            Some(formula) => formula,
+            None => match given.value {
+                Value::Thing(i) => match c.machine.store.thing(i) {
+                    Thing::Pattern(pattern) => pattern.clone(),
+                    _ => return Err(c.unfit("color", "a colour, a pattern or a function", given)),
+                },
+                _ => Pattern::Solid {
+                    colour: c.colour("color", given)?,
+                },
             },
         },
     };
     let strength = c.number_or("strength", 1.0, 0.0, 1e6)? as f32;
-    let number = |name, default: f32, least, most| -> Run<Option<f32>> {
-        let number = c.number_or(name, f64::from(default), least, most)? as f32;
-        Ok(c.get(name).is_some().then_some(number))
-    };
     let (roughness, roughness_map) = c.number_or_map("roughness", default.roughness)?;
     let (metallic, metallic_map) = c.number_or_map("metallic", default.metallic)?;
     let depth = c.number_or("bump_depth", 0.02, -LARGE, LARGE)? as f32;
-    let bump = match (c.get("bump"), c.pattern("bump")?) {
-        (_, Some(pattern)) => Some(Bump { pattern, depth }),
-        (Some(given), None) => return Err(c.unfit("bump", "a pattern such as noise(0, 1)", given)),
+    let bump = match (c.pattern("bump")?, c.get("bump")) {
+        (Some(pattern), _) => Some(Bump { pattern, depth }),
+        (None, Some(given)) => {
+            let wanted =
+                "a pattern such as noise(0, 1), or a function such as lambda p: noise(8 * p)";
+            return Err(c.unfit("bump", wanted, given));
+        }
         (None, None) => None,
     };
-    let shininess = number("shininess", default.shininess, 1.0, 1e4)?;
+    let shininess = c.number_or("shininess", f64::from(default.shininess), 1.0, 1e4)? as f32;
+    let shininess = c.get("shininess").is_some().then_some(shininess);
     let depth = c.number_or("tint_depth", 1.0, SMALL, LARGE)? as f32;
     let material = Material {
         pattern,
@@ -492,7 +502,7 @@ fn placed(c: &mut Call<'_, '_>, rows: [[f64; 3]; 3], offset: [f64; 3]) -> Run<Va
     pattern(c, placed)
 }
 
-fn pair(c: &Call<'_, '_>) -> Run<[Ink; 2]> {
+fn pair(c: &mut Call<'_, '_>) -> Run<[Ink; 2]> {
     Ok([c.ink_or("a", "#e8e8e8")?, c.ink_or("b", "#404040")?])
 }
 

@@ -19,10 +19,12 @@
 //! | `synonyms` | what other tools call things |
 //! | `formulas`, `shaping` | fields from formulas, between fields and along curves |
 //! | `lettering`, `sampling` | fields from letters and from files |
+//! | `colours` | materials from formulas |
 //! | `materials`, `stage`, `rendering`, `parameters` | everything else of a scene |
 
 mod builtins;
 mod calls;
+mod colours;
 pub(crate) mod depth;
 mod fields;
 mod formulas;

@@ -1,6 +1,6 @@
 //! The field as code: a line for each instruction, results as `p12` (points), `d12` (values) and `m12` (marks).
 
-use super::{Functions, MARKS, Operand, Plain, Step, places, plain_marks, steps};
+use super::{Functions, MARKS, Operand, Plain, Step, colours, places, plain_marks, steps};
 use crate::field::recorded::Form;
 use std::fmt::Write;
 use zeroset_catalogue::tape::Operation;
@@ -13,7 +13,8 @@ pub(super) fn text(structure: &Structure) -> String {
     let gradient = Printer::of(&values).function(&mut functions, true, result);
     let (marked, result) = steps(&structure.marks);
     let marks = marks(&mut functions, &marked, result);
-    let places = places::text(structure, &mut functions);
+    let places =
+        places::text(structure, &mut functions) + &colours::text(structure, &mut functions);
     format!(
         "{MARKS}\n{}\n{value}\n{gradient}\n{marks}\n{places}",
         functions.print()

@@ -6,7 +6,7 @@
 //! object and the material, plus one.
 
 use super::{
-    FieldSource, Functions, MARKS, Operand, Registers, has_traps, memory, name, places,
+    FieldSource, Functions, MARKS, Operand, Registers, colours, has_traps, memory, name, places,
     plain_marks, steps,
 };
 use crate::field::recorded::Form;
@@ -145,7 +145,8 @@ fn text(
     } else {
         PLAIN_MARKS.into()
     };
-    let places = places::text(structure, &mut functions);
+    let places =
+        places::text(structure, &mut functions) + &colours::text(structure, &mut functions);
     let functions = functions.print();
     // not local to the functions: those would be cleared in each call
     let registers = format!(

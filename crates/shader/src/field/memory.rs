@@ -5,7 +5,7 @@
 //! and writes its result in one place; and a turn of the loop carries out several.
 
 use super::interpreted::{FETCH, HEAD, Operations, PLAIN_MARKS, WORDS};
-use super::{Functions, MARKS, has_traps, places};
+use super::{Functions, MARKS, colours, has_traps, places};
 use crate::field::recorded::Form;
 use std::fmt::Write;
 use zeroset_catalogue::tape::Operation;
@@ -42,7 +42,8 @@ fn field_marks(p: vec3f) -> Marks {{
     } else {
         PLAIN_MARKS.into()
     };
-    let places = places::text(structure, &mut functions);
+    let places =
+        places::text(structure, &mut functions) + &colours::text(structure, &mut functions);
     let functions = functions.print();
     let value = run(
         "fn field(p: vec3f) -> f32",

@@ -9,6 +9,7 @@ use zeroset_catalogue::tape::{Code, Operation};
 use zeroset_field::program::{Coat, Structure};
 use zeroset_number::wgsl;
 
+mod colours;
 mod compiled;
 mod interpreted;
 mod memory;
@@ -26,6 +27,10 @@ pub mod recorded;
 /// and, where the program has [coats](Structure::coats), where a point lies in their spaces, with the derivatives of each coordinate:
 /// ```wgsl
 /// fn field_place(number: u32, p: vec3f) -> mat3x4f // number: see `place_number`
+/// ```
+/// and, where it has [formulas of colours](Structure::colours),
+/// ```wgsl
+/// fn field_colour(number: u32, p: vec3f) -> vec3f // red, green and blue
 /// ```
 /// and reads `params`, an `array<f32>`, and `code`, an `array<u32>`, which the module declares. Other names that it declares
 /// begin with `field_`, with the name of a [`Form`] or with a kind of [`Operation`], or are those of `stage/marks.wgsl`.

@@ -1,14 +1,15 @@
 // Materials with textures. The twin of `shade/coat.rs` and of `Texture` in `shade/pattern.rs`.
 
 const KIND_TRIPLANAR: u32 = 5u;
+const KIND_FORMULA: u32 = 8u;
 
 /// Shares of two inks, from that of the second.
 fn two_inks(second: f32) -> vec4f {
     return vec4f(1.0 - second, second, 0.0, 0.0);
 }
 
-/// The linear colour of the texture that begins at a row.
-fn texture_colour(first: u32, at: Place) -> vec3f {
+/// What the texture that begins at a row shows: a linear colour, or a height, which formulas may give any value.
+fn texture_colour(first: u32, at: Place, heights: bool) -> vec3f {
     var shares: array<f32, TEXTURE_PARTS>;
     shares[0] = 1.0;
     var sum = vec3f(0.0);
@@ -23,6 +24,10 @@ fn texture_colour(first: u32, at: Place) -> vec3f {
         }
         if (u32(part.kind) == KIND_TRIPLANAR) {
             sum += pattern_triplanar(part, here) * shares[k];
+            continue;
+        }
+        if (u32(part.kind) == KIND_FORMULA) {
+            sum += pattern_formula(part, here, heights) * shares[k];
             continue;
         }
         let inks = pattern_shares(part, here) * shares[k];
@@ -70,7 +75,7 @@ fn local_material(number: f32, at: Place, d: vec3f) -> LocalMaterial {
             let beside = select(along, across, k == 4u) * step;
             place.point += vec3f(dot(space.x, beside), dot(space.y, beside), dot(space.z, beside));
         }
-        seen[k] = texture_colour(u32(row), place);
+        seen[k] = texture_colour(u32(row), place, k >= 3u);
     }
     let albedo = select(m.albedo, seen[0], m.albedo_texture > 0.0);
     var finish = vec4f(m.specular, m.metallic, m.roughness, m.transmission);

@@ -2,7 +2,7 @@
 
 use super::{field, glam};
 use glam::{Mat3, Vec3};
-use zeroset_number::v3;
+use zeroset_number::{F64, v3};
 use zeroset_scene::material::{Bump, Ink, Pattern};
 use zeroset_shade::pattern::{self, Place, Texture};
 
@@ -22,9 +22,14 @@ pub(super) fn seen_from(at: &Place<f32>, point: Vec3, rows: [Vec3; 3]) -> Place<
 
 /// The colour of a pattern.
 pub(super) fn shown(whole: &Pattern, at: &Place<f32>) -> Vec3 {
+    seen(whole, at, false)
+}
+
+/// What a pattern shows, as a colour or as a height.
+fn seen(whole: &Pattern, at: &Place<f32>, heights: bool) -> Vec3 {
     let ink = |ink: &Ink| match ink {
         Ink::Colour(colour) => *colour,
-        Ink::Pattern(inner) => shown(inner, at),
+        Ink::Pattern(inner) => seen(inner, at, heights),
     };
     let mixed = |inks: &[Ink; 2], second: f32| ink(&inks[0]).lerp(ink(&inks[1]), second);
     match whole {
@@ -36,7 +41,16 @@ pub(super) fn shown(whole: &Pattern, at: &Place<f32>) -> Vec3 {
         } => {
             let p = glam(at.point);
             let point = Vec3::from(rows.map(|row| row.dot(p))) + *offset;
-            shown(pattern, &seen_from(at, point, *rows))
+            seen(pattern, &seen_from(at, point, *rows), heights)
+        }
+        Pattern::Formula { formula } => {
+            let p = at.point.map(|x| F64(f64::from(x)));
+            let colour = formula.eval(p).map(|c| c.0 as f32);
+            match colour.iter().all(|c| c.abs() < 1e30) {
+                true if heights => Vec3::from(colour).clamp(Vec3::splat(-1e6), Vec3::splat(1e6)),
+                true => Vec3::from(colour).clamp(Vec3::ZERO, Vec3::ONE),
+                false => Vec3::new(1.0, 0.0, 1.0),
+            }
         }
         Pattern::Checker { colours, size } => mixed(colours, pattern::checker(at, *size)),
         Pattern::Stripes {
@@ -66,11 +80,15 @@ pub(super) fn shown(whole: &Pattern, at: &Place<f32>) -> Vec3 {
 
 /// A pattern as a number, 0 to 1.
 pub(super) fn number(pattern: &Pattern, at: &Place<f32>) -> f32 {
-    height(pattern, at).clamp(0.0, 1.0)
+    luminance(shown(pattern, at)).clamp(0.0, 1.0)
 }
 
 fn height(pattern: &Pattern, at: &Place<f32>) -> f32 {
-    shown(pattern, at).dot(Vec3::new(0.2126, 0.7152, 0.0722))
+    luminance(seen(pattern, at, true))
+}
+
+fn luminance(colour: Vec3) -> f32 {
+    colour.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
 /// The normal of a surface with heights: that of the plane through what is raised, as far as it is seen. `here` is the place in the space

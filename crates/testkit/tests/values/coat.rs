@@ -204,7 +204,12 @@ sun(direction = (-0.3, -1, -0.6), shadow = none())\nsky(\"#6080a0\", ambient = 0
 }
 
 /// Lambert's light of a lamp far away on a floor with heights.
-fn lit(draw: Draw, floor: &str, normal: impl Fn(DVec3) -> Option<DVec3>, tolerance: f64) -> Found {
+pub fn lit(
+    draw: Draw,
+    floor: &str,
+    normal: impl Fn(DVec3) -> Option<DVec3>,
+    tolerance: f64,
+) -> Found {
     let eye = Eye::straight(DVec3::Y, DVec3::NEG_Z, DVec3::ZERO, 2.4);
     let text =
         format!("show({floor})\nsun(direction = (1, -2, 0.5), shadow = none())\nsky(ambient = 0)");

@@ -3,6 +3,7 @@
 use crate::{check_named, on};
 use glam::Vec3;
 use std::sync::Arc;
+use zeroset::field::formula::ColourFormula;
 use zeroset::gpu::testing;
 use zeroset::scene::accumulator::Accumulator;
 use zeroset::scene::light::Source;
@@ -28,6 +29,18 @@ fn inside_out(scene: &mut SceneParts) {
         | Pattern::Noise { colours, .. } => colours.swap(0, 1),
         Pattern::Orbit { colours } => colours.swap(2, 3),
         _ => {}
+    });
+}
+
+/// Formulas whose red is another's blue.
+fn exchanged(scene: &mut SceneParts) {
+    patterns(scene, |pattern| {
+        if let Pattern::Formula { formula } = pattern {
+            let (steps, fields) = (formula.steps().to_vec(), formula.fields().to_vec());
+            let [red, green, blue] = formula.results();
+            let other = ColourFormula::of_steps(steps, fields, [blue, green, red]);
+            *formula = Arc::new(other.expect("the same steps"));
+        }
     });
 }
 
@@ -82,7 +95,8 @@ fn skylight(scene: &mut SceneParts, param: &str, times: f32) {
 type SceneFault = (&'static str, fn(&mut SceneParts), &'static str);
 
 /// Faults of renderers that a changed scene stands for.
-const IN_SCENES: [SceneFault; 22] = [
+const IN_SCENES: [SceneFault; 23] = [
+    ("red and blue exchanged", exchanged, "a colour by a formula"),
     ("checkers inside out", inside_out, "checker"),
     ("stripes inside out", inside_out, "stripes"),
     ("stripes inside out", inside_out, "slanted stripes"),

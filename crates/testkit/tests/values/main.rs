@@ -11,6 +11,7 @@
 mod around;
 mod camera;
 mod coat;
+mod colours;
 mod faults;
 mod film;
 mod known;
@@ -35,9 +36,10 @@ use zeroset_testkit::plain::{self, Compiled, Quality};
 
 /// Every check.
 fn checks() -> Vec<Check> {
-    let groups: [&[Check]; 11] = [
+    let groups: [&[Check]; 12] = [
         &camera::CHECKS,
         &coat::CHECKS,
+        &colours::CHECKS,
         &film::CHECKS,
         &lamps::CHECKS,
         &lens::CHECKS,

@@ -34,6 +34,8 @@ struct Findings {
     instructions: Option<usize>,
     /// Whether every distance is proven never to be too large.
     proven: bool,
+    /// Formulas of materials that give values out of their range.
+    clamped: Vec<ClampedFinding>,
     /// What single precision tells apart where the camera looks, and the width of a pixel there, where that is too coarse.
     coarse: Option<(f64, f64)>,
     /// The object that the camera stands in.
@@ -80,6 +82,20 @@ struct ExceededFinding {
     stated: f64,
     /// The length of the gradient that was found.
     found: f64,
+    /// Where, in the coordinates of the formula.
+    at: [f64; 3],
+}
+
+#[derive(Serialize)]
+struct ClampedFinding {
+    /// What the formula is of: the colour, the roughness, the metal.
+    what: &'static str,
+    /// The number of the material in the scene.
+    material: usize,
+    /// The objects that it is the material of.
+    objects: Vec<String>,
+    /// A value that is clamped; null where it is no number.
+    value: Option<f64>,
     /// Where, in the coordinates of the formula.
     at: [f64; 3],
 }
@@ -162,6 +178,19 @@ fn findings(loaded: &Loaded, program: Option<&Program>, cost: Cost) -> Findings 
             .iter()
             .all(|o| o.unproven.is_empty() && o.sought.is_empty()),
         objects,
+        clamped: survey::clamped(scene)
+            .into_iter()
+            .map(|c| ClampedFinding {
+                what: c.what,
+                material: c.material,
+                objects: (scene.objects().iter())
+                    .filter(|o| usize::from(o.material) == c.material)
+                    .map(|o| o.name.clone())
+                    .collect(),
+                value: c.value,
+                at: c.at,
+            })
+            .collect(),
         coarse: survey::coarse(scene),
         inside: survey::around_camera(scene).map(str::to_owned),
         cost,
@@ -329,6 +358,31 @@ fn words(findings: &Findings) -> String {
                 digits(loose, 2),
             );
         }
+    }
+    for c in &findings.clamped {
+        let of = match &c.objects[..] {
+            [] => format!("material {}", c.material),
+            objects => objects
+                .iter()
+                .map(|o| name(o))
+                .collect::<Vec<_>>()
+                .join(", "),
+        };
+        let at = c.at.map(|x| digits(x, 4)).join(", ");
+        let _ = match c.value {
+            Some(value) => writeln!(
+                out,
+                "Clamped: the formula of the {} of {of} leaves 0 to 1: at ({at}) a number of it is {} (linear). saturate(x) or clamp(x, 0, 1) \
+                 says that it is meant.",
+                c.what,
+                digits(value, 3),
+            ),
+            None => writeln!(
+                out,
+                "No number: the formula of the {} of {of} has no value at ({at}). It shows magenta there.",
+                c.what,
+            ),
+        };
     }
     if let Some(object) = &findings.inside {
         out.push_str(&survey::inside_words(&name(object)));
