@@ -314,7 +314,14 @@ fn advected(extent: &Extent, open: &[f32], source: &Source, spread: f32) -> Vec<
     });
     let upwind: Vec<Upwind> = (0..nx * ny * nz)
         .into_par_iter()
-        .map(|n| upwind(extent, [n % nx, n / nx % ny, n / nx / ny], source, lamp.as_ref()))
+        .map(|n| {
+            upwind(
+                extent,
+                [n % nx, n / nx % ny, n / nx / ny],
+                source,
+                lamp.as_ref(),
+            )
+        })
         .collect();
     let mut spare = vec![0.0; open.len()];
     // one over what is open around each node
@@ -353,12 +360,7 @@ fn advected(extent: &Extent, open: &[f32], source: &Source, spread: f32) -> Vec<
 }
 
 /// Where light comes from that is at a node.
-fn upwind(
-    extent: &Extent,
-    node: [usize; 3],
-    source: &Source,
-    lamp: Option<&Lamp<f32>>,
-) -> Upwind {
+fn upwind(extent: &Extent, node: [usize; 3], source: &Source, lamp: Option<&Lamp<f32>>) -> Upwind {
     let all = Upwind {
         cell: None,
         t: [0.0; 3],
@@ -372,9 +374,7 @@ fn upwind(
         Source::Point { position }
         | Source::Rectangle { position, .. }
         | Source::Disc { position, .. }
-        | Source::Sphere { position, .. } => {
-            (p - parameters(*position)).length() < extent.voxel
-        }
+        | Source::Sphere { position, .. } => (p - parameters(*position)).length() < extent.voxel,
     };
     let way = flow.flux / flow.fluence.max(1e-30);
     if near || !(way.length() > 0.0) {
@@ -412,31 +412,37 @@ fn between(values: &[f32], cell: usize, [row, slice]: [usize; 2], [x, y, z]: [f3
 /// Blurs samples along each axis: `spread` of each is mixed as [`mixed`] does, and the rest stays. Ends stay as they are.
 fn blur([nx, ny, nz]: [usize; 3], spread: f32, values: &mut [f32], spare: &mut [f32]) {
     let kept = 1.0 - spread;
-    spare.par_chunks_mut(nx * ny).zip(values.par_chunks(nx * ny)).for_each_init(
-        || vec![0.0; nx * ny],
-        |narrow, (out, slice)| {
-            for (out, row) in narrow.chunks_mut(nx).zip(slice.chunks(nx)) {
-                out.copy_from_slice(row);
-                for (out, three) in out[1..].iter_mut().zip(row.windows(3)) {
-                    *out = kept * three[1] + spread * mixed(three[0], three[1], three[2]);
+    spare
+        .par_chunks_mut(nx * ny)
+        .zip(values.par_chunks(nx * ny))
+        .for_each_init(
+            || vec![0.0; nx * ny],
+            |narrow, (out, slice)| {
+                for (out, row) in narrow.chunks_mut(nx).zip(slice.chunks(nx)) {
+                    out.copy_from_slice(row);
+                    for (out, three) in out[1..].iter_mut().zip(row.windows(3)) {
+                        *out = kept * three[1] + spread * mixed(three[0], three[1], three[2]);
+                    }
                 }
-            }
-            lines(kept, out, narrow, nx, ny);
-        },
-    );
+                lines(kept, out, narrow, nx, ny);
+            },
+        );
     let wide = nx * ny;
-    values.par_chunks_mut(wide).enumerate().for_each(|(k, out)| {
-        let slice = |k: usize| &spare[k * wide..][..wide];
-        let here = slice(k);
-        if k == 0 || k + 1 == nz {
-            out.copy_from_slice(here);
-            return;
-        }
-        let (before, after) = (slice(k - 1), slice(k + 1));
-        for (i, out) in out.iter_mut().enumerate() {
-            *out = kept * here[i] + spread * mixed(before[i], here[i], after[i]);
-        }
-    });
+    values
+        .par_chunks_mut(wide)
+        .enumerate()
+        .for_each(|(k, out)| {
+            let slice = |k: usize| &spare[k * wide..][..wide];
+            let here = slice(k);
+            if k == 0 || k + 1 == nz {
+                out.copy_from_slice(here);
+                return;
+            }
+            let (before, after) = (slice(k - 1), slice(k + 1));
+            for (i, out) in out.iter_mut().enumerate() {
+                *out = kept * here[i] + spread * mixed(before[i], here[i], after[i]);
+            }
+        });
 }
 
 /// The same from line to line, of which there are so many.

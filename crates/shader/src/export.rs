@@ -347,7 +347,13 @@ fn one_line(name: &str) -> String {
 fn parts(scene: &Scene) -> Result<Parts, ExportError> {
     let around = EnvironmentMap::renewed(None, scene);
     let (limits, form) = (Limits::default(), FieldForm::Compiled);
-    Ok(Parts::new(scene, &limits, form, around.as_deref(), Before::default())?)
+    Ok(Parts::new(
+        scene,
+        &limits,
+        form,
+        around.as_deref(),
+        Before::default(),
+    )?)
 }
 
 /// Members of the frame that only bound what there is: they may be larger, or smaller.

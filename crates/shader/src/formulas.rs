@@ -11,8 +11,8 @@ use zeroset_shade::sky::{self, SkyColours};
 use zeroset_shade::surface::{self, Lighting, LocalMaterial};
 use zeroset_shade::view::{self, Linear};
 use zeroset_shade::{
-    advection, air, bsdf, environment, lamp, light, march, normal, occlusion, sampling, secondary, shadow,
-    skin, skylight, tone,
+    advection, air, bsdf, environment, lamp, light, march, normal, occlusion, sampling, secondary,
+    shadow, skin, skylight, tone,
 };
 
 /// A formula that shaders call.

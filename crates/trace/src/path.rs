@@ -176,9 +176,7 @@ fn look<S: Simd>(s: S, sample: &TileSample<'_>, light: &Light, number: u32, q: &
         Shadow::Hard
         | Shadow::Soft { .. }
         | Shadow::SoftClosest { .. }
-        | Shadow::Advected { .. } => {
-            from_hits(s, Hard, &aim, sample.marched, all, q)
-        }
+        | Shadow::Advected { .. } => from_hits(s, Hard, &aim, sample.marched, all, q),
     };
     for i in 0..q.hits.count {
         let number = (q.hits.word[i] & ORDINAL) as usize;

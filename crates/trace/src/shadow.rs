@@ -167,11 +167,7 @@ pub(crate) fn advected<S: Simd>(
                 let left = volume.left(reading, point, normal, to, distance);
                 let left = Lanes::select(inside, splat(s, 1.0), left);
                 let facing = normal.dot(to).above(0.0);
-                store(
-                    Lanes::select(facing, left, splat(s, 0.0)),
-                    &mut q.lit,
-                    i,
-                );
+                store(Lanes::select(facing, left, splat(s, 0.0)), &mut q.lit, i);
             }
         },
     );

@@ -60,7 +60,10 @@ fn flow_is_that_of_points_and_spheres() {
             let solid = std::f64::consts::TAU * (1.0 - (1.0 - sine * sine).sqrt());
             // its radiance times that
             let all = solid / (std::f64::consts::PI * f64::from(radius).powi(2));
-            assert!((f64::from(sphere.fluence) / all - 1.0).abs() < 1e-4, "{radius}");
+            assert!(
+                (f64::from(sphere.fluence) / all - 1.0).abs() < 1e-4,
+                "{radius}"
+            );
         }
     }
 }
@@ -171,7 +174,9 @@ fn volumes_are_kept_while_light_stays() {
         )
     };
     let first = scene(&text(1.0, 2.0, ""));
-    let made = LightVolume::renewed(None, &first, &program(&first)).unwrap().unwrap();
+    let made = LightVolume::renewed(None, &first, &program(&first))
+        .unwrap()
+        .unwrap();
     assert!(made.readings[0].is_none() && made.readings[1].is_some());
     let renewed = |text: &str| {
         let scene = scene(text);

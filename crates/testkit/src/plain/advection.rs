@@ -93,8 +93,7 @@ fn way(light: &Light, p: DVec3, voxel: f64) -> Option<DVec3> {
         }
         Source::Rectangle { position, .. } | Source::Disc { position, .. } => {
             let lamp = Lamp::of(light)?;
-            let [x, y] =
-                [lamp.right, lamp.up].map(|v| Vec3::from(v.array()).as_dvec3());
+            let [x, y] = [lamp.right, lamp.up].map(|v| Vec3::from(v.array()).as_dvec3());
             let mut all = Vec::new();
             for k in 0..16 {
                 let u = [k % 4, k / 4].map(|n| 0.125 + 0.25 * n as f32);
