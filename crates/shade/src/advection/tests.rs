@@ -97,7 +97,8 @@ fn light_comes_in_where_its_way_does() {
     assert!(found([-3.0, 9.0, 1.0], [1.0, 0.0, 0.0]) < 0.0);
 }
 
-/// What is flat takes nothing of light that comes from its front, from whichever side, however it is blurred: to the bit.
+/// What is flat takes nothing of light that comes from its front, from whichever side, however it is blurred,
+/// but where light that nearly grazes it is blurred into voxels that are solid in part.
 #[test]
 fn floors_throw_no_shadow_on_themselves() {
     for light in [
@@ -114,7 +115,8 @@ fn floors_throw_no_shadow_on_themselves() {
         for n in 0..nx * ny * nz {
             let node = [n % nx, n / nx % ny, n / nx / ny];
             if origin[1] + voxel * node[1] as f32 > 1.01 * voxel {
-                assert_eq!(left(&volume, node), 1.0, "{light} {node:?}");
+                let left = left(&volume, node);
+                assert!(left > 0.99, "{light} {node:?}: {left}");
             }
         }
     }
