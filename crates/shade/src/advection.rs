@@ -12,7 +12,7 @@
 //! ```
 //!
 //! with `o` the open share of a voxel. **What the paper leaves open**: blur, steps, solids and what many lights have in common. Dividing by what
-//! is open keeps solids out of the blur, so that no light is lost along walls. The paper's one volume for all lights follows their mean direction,
+//! is open keeps solids out of the blur, so that hardly any light is lost along walls. The paper's one volume for all lights follows their mean direction,
 //! which between two lights points at neither. Here each light has its own.
 //!
 //! **Beyond the volume** there is nothing that has an end: light goes straight on from where it leaves. **Beside the surface**, some voxels before

@@ -98,7 +98,7 @@ fn light_comes_in_where_its_way_does() {
 }
 
 /// What is flat takes nothing of light that comes from its front, from whichever side, however it is blurred,
-/// but where light that nearly grazes it is blurred into voxels that are solid in part.
+/// as far before it as light is read: light that nearly grazes it is blurred into voxels that are solid in part, and these take a little.
 #[test]
 fn floors_throw_no_shadow_on_themselves() {
     for light in [
@@ -114,7 +114,7 @@ fn floors_throw_no_shadow_on_themselves() {
         let [nx, ny, nz] = volume.extent.nodes(0);
         for n in 0..nx * ny * nz {
             let node = [n % nx, n / nx % ny, n / nx / ny];
-            if origin[1] + voxel * node[1] as f32 > 1.01 * voxel {
+            if origin[1] + voxel * node[1] as f32 > 2.0 * voxel {
                 let left = left(&volume, node);
                 assert!(left > 0.99, "{light} {node:?}: {left}");
             }
