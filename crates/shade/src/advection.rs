@@ -377,7 +377,7 @@ fn upwind(extent: &Extent, node: [usize; 3], source: &Source, lamp: Option<&Lamp
         | Source::Sphere { position, .. } => (p - parameters(*position)).length() < extent.voxel,
     };
     let way = flow.flux / flow.fluence.max(1e-30);
-    if near || !(way.length() > 0.0) {
+    if near || way.length() <= 0.0 {
         return all;
     }
     let from = (v3(i, j, k) - way).array();
