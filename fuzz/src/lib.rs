@@ -14,7 +14,7 @@ use zeroset_scene::film::Plane;
 use zeroset_scene::progressive::Progressive;
 use zeroset_scene::render::{Observer, RenderError, Renderer};
 use zeroset_scene::scene::Scene;
-use zeroset_scene::settings::{Antialias, Filter, Integrator, Occlusion};
+use zeroset_scene::settings::{Antialias, Filter, Integrator, Occlusion, Shadow};
 use zeroset_trace::CpuRenderer;
 
 /// Loads a text, and what it wrote of it as JSON. `None` where it is refused.
@@ -96,6 +96,11 @@ pub fn render(mut scene: Scene) {
         _ => {}
     };
     let changed = scene.edit(|s| {
+        for light in &mut s.lights {
+            if let Shadow::Advected { resolution, .. } = &mut light.shadow {
+                *resolution = (*resolution).min(16);
+            }
+        }
         s.settings.size = [SIDE; 2];
         s.settings.max_steps = s.settings.max_steps.min(64);
         if let Antialias::Supersample { samples, .. } = &mut s.settings.antialias {

@@ -75,6 +75,15 @@ choice! {
         },
         /// Lit or not: one ray towards the light.
         Hard("hard", "Hard", "Tomczak 2012, 3.2"),
+        /// Light that flows through a volume around what has an end: soft shadows without rays, wherever the light is.
+        Advected("advected", "Advected", "Evans 2006, 9.9 and figure 12") {
+            /// Voxels along the longest side of the volume around what has an end.
+            resolution: u32 = 64, Param::new("Resolution", Unit::Count, Allowed::between(16.0, 160.0)).usual(16.0, 160.0).logarithmic();
+            /// How much of the light is blurred from voxel to voxel: shadows grow softer on their way.
+            spread: f32 = 0.3, Param::new("Spread", Unit::Ratio, Allowed::between(0.0, 1.0));
+            /// How far before surfaces light is read, in voxels: less, and they shadow themselves.
+            bias: f32 = 2.0, Param::new("Bias", Unit::Ratio, Allowed::between(0.0, 8.0)).usual(0.0, 4.0)
+        },
         /// Every surface that faces a light is lit.
         None("none", "None", "no rays"),
     }

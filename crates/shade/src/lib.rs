@@ -20,6 +20,7 @@
 
 #![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
+pub mod advection;
 pub mod air;
 pub mod bsdf;
 pub mod closed;

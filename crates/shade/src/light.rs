@@ -70,7 +70,7 @@ pub fn disc_power<R: Real>(cosine: R) -> R {
 pub fn width(light: &Light) -> f32 {
     match light.shadow {
         Shadow::Soft { sharpness } | Shadow::SoftClosest { sharpness } => width_of(sharpness),
-        Shadow::Hard | Shadow::None => 1.0,
+        Shadow::Hard | Shadow::Advected { .. } | Shadow::None => 1.0,
     }
 }
 

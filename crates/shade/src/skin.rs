@@ -59,7 +59,7 @@ fn reads_distances(scene: &Scene) -> bool {
     };
     let soft = |s: &Shadow| match s {
         Shadow::Soft { .. } | Shadow::SoftClosest { .. } => true,
-        Shadow::None | Shadow::Hard => false,
+        Shadow::None | Shadow::Hard | Shadow::Advected { .. } => false,
     };
     cones(&scene.settings().occlusion)
         || (scene.objects().iter()).any(|o| o.occlusion.as_ref().is_some_and(cones))

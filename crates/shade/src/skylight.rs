@@ -212,13 +212,9 @@ impl SkyVolume {
             let Some((of, painted)) = &volume.made_of else {
                 return false;
             };
-            let (a, b) = (of.data(), program.data());
             volume.extent == extent
                 && (!is_coloured || (volume.is_coloured && *painted == colours))
-                && of.structure() == program.structure()
-                && a.params == b.params
-                && a.grids.len() == b.grids.len()
-                && a.grids.iter().zip(&b.grids).all(|(a, b)| Arc::ptr_eq(a, b))
+                && is_same(of, program)
         };
         if let Some(same) = before.filter(same) {
             return Ok(Some(Arc::clone(same)));
@@ -347,8 +343,17 @@ impl SkyVolume {
     }
 }
 
+/// Whether two programs are one field.
+pub(crate) fn is_same(one: &Program, other: &Program) -> bool {
+    let (a, b) = (one.data(), other.data());
+    one.structure() == other.structure()
+        && a.params == b.params
+        && a.grids.len() == b.grids.len()
+        && a.grids.iter().zip(&b.grids).all(|(a, b)| Arc::ptr_eq(a, b))
+}
+
 /// The resolution that a field of so many instructions is sampled with in place of another one.
-fn affordable(mut resolution: u32, instructions: usize) -> u32 {
+pub(crate) fn affordable(mut resolution: u32, instructions: usize) -> u32 {
     let work = |n: u32| u64::from(n).pow(3).saturating_mul(instructions as u64);
     while resolution > 3 * MARGIN && work(resolution) > WORK {
         resolution /= 2;
@@ -436,7 +441,7 @@ fn row(extent: &Extent, level: usize, number: usize, into: &mut Vec<glam::Vec3>)
 }
 
 /// What is shown as distances at the nodes of the finest mip.
-fn sampled(program: &Program, extent: &Extent) -> Vec<f32> {
+pub(crate) fn sampled(program: &Program, extent: &Extent) -> Vec<f32> {
     let [nx, ny, nz] = extent.nodes(0).map(|n| n as usize);
     let mut values = vec![0.0; nx * ny * nz];
     let most = FARTHEST * extent.voxel;
@@ -607,7 +612,7 @@ fn beside(i: usize, count: usize) -> (usize, usize) {
 }
 
 #[inline(always)]
-fn mixed(before: f32, here: f32, after: f32) -> f32 {
+pub(crate) fn mixed(before: f32, here: f32, after: f32) -> f32 {
     0.5 * here + 0.25 * (before + after)
 }
 

@@ -4,7 +4,7 @@
 //! their pixel, and there are no cones.
 
 use crate::fold;
-use crate::job::{FieldForm, Parts};
+use crate::job::{Before, FieldForm, Parts};
 use crate::layout::{Frame, Shared};
 use crate::motion::{self, Motion, Numbers};
 use crate::texture;
@@ -113,7 +113,7 @@ pub fn glsl_moving(
     let mut inputs = inputs.to_vec();
     // occlusion by a volume of distances has one that is made anew for each place that is tried
     let mut motion = Motion::held(&inputs, "a volume of distances is as it was made");
-    if parts.sky.is_none() && !inputs.is_empty() {
+    if parts.sky.is_none() && parts.light.is_none() && !inputs.is_empty() {
         let mut make = |values: &[f64]| {
             let scene = scene_at(values)?;
             Some(numbers(&scene, &self::parts(&scene).ok()?))
@@ -347,7 +347,13 @@ fn one_line(name: &str) -> String {
 fn parts(scene: &Scene) -> Result<Parts, ExportError> {
     let around = EnvironmentMap::renewed(None, scene);
     let (limits, form) = (Limits::default(), FieldForm::Compiled);
-    Ok(Parts::new(scene, &limits, form, around.as_deref(), None)?)
+    Ok(Parts::new(
+        scene,
+        &limits,
+        form,
+        around.as_deref(),
+        Before::default(),
+    )?)
 }
 
 /// Members of the frame that only bound what there is: they may be larger, or smaller.

@@ -11,8 +11,8 @@ use zeroset_shade::sky::{self, SkyColours};
 use zeroset_shade::surface::{self, Lighting, LocalMaterial};
 use zeroset_shade::view::{self, Linear};
 use zeroset_shade::{
-    air, bsdf, environment, lamp, light, march, normal, occlusion, sampling, secondary, shadow,
-    skin, skylight, tone,
+    advection, air, bsdf, environment, lamp, light, march, normal, occlusion, sampling, secondary,
+    shadow, skin, skylight, tone,
 };
 
 /// A formula that shaders call.
@@ -301,6 +301,7 @@ formulas! {
     fn soft_shadow(f: Number, t: Number, sharpness: Number) = shadow::soft(f, t, sharpness);
     fn closest_shadow(f: Number, z: Number, r: Number, t: Number, sharpness: Number) =
         shadow::soft_closest(f, z, r, t, sharpness);
+    fn advected_entry(place: Vec3, to: Vec3, cells: Vec3) = advection::entry(place, to, cells);
 
     // occlusion
     fn visibility(sum: Number, scale: Number) = occlusion::visibility(sum, scale);

@@ -19,6 +19,7 @@ use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{
     Antialias, Filter, Integrator, March, Occlusion, Settings, Shading, Shadow,
 };
+use zeroset_shade::advection::LightVolume;
 use zeroset_shade::air::Air;
 use zeroset_shade::coat::{Coat, compiled};
 use zeroset_shade::coverage::LAYERS;
@@ -27,7 +28,7 @@ use zeroset_shade::lamp::{Lamp, Shape};
 use zeroset_shade::light::luminance;
 use zeroset_shade::pattern::{Part, PartInk, Texture};
 use zeroset_shade::skin::has_skins;
-use zeroset_shade::skylight::{LEVELS, Reading, SkyVolume, per_voxel};
+use zeroset_shade::skylight::{Extent, LEVELS, Reading, SkyVolume, per_voxel};
 use zeroset_shade::view::{Region, View};
 
 /// How the field gets into the shader.
@@ -56,6 +57,8 @@ pub struct Shaders {
     around: Option<Arc<EnvironmentMap>>,
     /// The volume of skylight of the scene before.
     sky: Option<Arc<SkyVolume>>,
+    /// The volumes of its lights.
+    light: Option<Arc<LightVolume>>,
 }
 
 /// A text and what belongs to it.
@@ -113,9 +116,13 @@ impl Shaders {
     /// See [`RenderError`].
     pub fn prepare(&mut self, scene: &Scene) -> Result<Job, RenderError> {
         self.around = EnvironmentMap::renewed(self.around.as_ref(), scene);
-        let (around, before) = (self.around.as_deref(), self.sky.as_ref());
+        let before = Before {
+            sky: self.sky.as_ref(),
+            light: self.light.as_ref(),
+        };
+        let around = self.around.as_deref();
         let parts = Parts::new(scene, &self.limits, self.form, around, before)?;
-        self.sky = parts.sky;
+        (self.sky, self.light) = (parts.sky, parts.light);
         let turns = Turns(Some(parts.key.in_turns()));
         let made = self.text(parts.key);
         Ok(Job {
@@ -178,6 +185,14 @@ pub(crate) struct Parts {
     pub(crate) images: Vec<Arc<Image>>,
     pub(crate) grids: Vec<Arc<Grid>>,
     pub(crate) sky: Option<Arc<SkyVolume>>,
+    pub(crate) light: Option<Arc<LightVolume>>,
+}
+
+/// The volumes of the scene before.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Before<'a> {
+    sky: Option<&'a Arc<SkyVolume>>,
+    light: Option<&'a Arc<LightVolume>>,
 }
 
 impl Parts {
@@ -186,7 +201,7 @@ impl Parts {
         limits: &Limits,
         form: FieldForm,
         around: Option<&EnvironmentMap>,
-        sky_before: Option<&Arc<SkyVolume>>,
+        before: Before<'_>,
     ) -> Result<Parts, RenderError> {
         let (program, region) = compiled(scene, limits)?;
         let formulas = material::formulas(scene.materials());
@@ -195,10 +210,14 @@ impl Parts {
         if let Some(around) = around {
             images.extend([&around.image, &around.table, &around.glossy].map(Arc::clone));
         }
-        let sky = SkyVolume::renewed(sky_before, scene, &program)?;
+        let sky = SkyVolume::renewed(before.sky, scene, &program)?;
+        let light = LightVolume::renewed(before.light, scene, &program)?;
         let mut grids = program.data().grids.clone();
         let sky_grid = grids.len();
         grids.extend(sky.iter().flat_map(|sky| sky.data.grids.iter().cloned()));
+        let light_grid = grids.len();
+        let lit = light.iter().flat_map(|light| &light.data.grids);
+        grids.extend(lit.cloned());
         let voxel = sky.as_ref().map_or(1.0, |sky| sky.extent.voxel);
         let (mut table, mut frame) = tables(
             scene,
@@ -206,11 +225,16 @@ impl Parts {
             &images,
             &grids,
             voxel,
+            (light.as_deref(), light_grid),
             frame(scene, &region),
         );
         if let Some(sky) = &sky {
             frame.sky_rows = table.len() as u32;
-            push(&mut table, sky_row(sky, sky_grid));
+            push(&mut table, volume_row(&sky.extent, sky_grid));
+        }
+        if let Some(light) = &light {
+            frame.advected_rows = table.len() as u32;
+            push(&mut table, volume_row(&light.extent, light_grid));
         }
         if let Some(around) = around {
             frame.around_rows = table.len() as u32;
@@ -223,13 +247,14 @@ impl Parts {
             | u32::from(program.is_close()) << 1
             | u32::from(has_skins(scene, &program)) << 2;
         Ok(Parts {
-            key: Key::new(scene, &program, form, table.len()),
+            key: Key::new(scene, &program, form, table.len(), light.is_some()),
             frame,
             params: program.params().to_vec(),
             table,
             images,
             grids,
             sky,
+            light,
         })
     }
 }
@@ -430,13 +455,19 @@ fn tables(
     images: &[Arc<Image>],
     grids: &[Arc<Grid>],
     voxel: f32,
+    (advected, first): (Option<&LightVolume>, usize),
     mut frame: Frame,
 ) -> (Vec<[f32; 4]>, Frame) {
     let mut table = Vec::new();
     frame.lights = scene.lights().len() as u32;
     frame.light_rows = 0;
-    for light in scene.lights() {
-        push(&mut table, light_row(light));
+    for (number, light) in scene.lights().iter().enumerate() {
+        let mut row = light_row(light);
+        if let Some(Some(reading)) = advected.and_then(|volume| volume.readings.get(number)) {
+            row.sharpness = reading.before;
+            row.grid = (first + reading.grid) as f32;
+        }
+        push(&mut table, row);
     }
     frame.object_rows = table.len() as u32;
     frame.objects = scene.objects().len() as u32;
@@ -508,11 +539,11 @@ pub(crate) fn grid_row(grid: &Grid, start: u64) -> layout::Grid {
 }
 
 /// `grid`: the number of its first grid.
-fn sky_row(sky: &SkyVolume, grid: usize) -> layout::SkyVolume {
+fn volume_row(extent: &Extent, grid: usize) -> layout::SkyVolume {
     layout::SkyVolume {
-        origin: sky.extent.origin,
-        voxel: sky.extent.voxel,
-        cells: sky.extent.cells.map(|n| n as f32),
+        origin: extent.origin,
+        voxel: extent.voxel,
+        cells: extent.cells.map(|n| n as f32),
         grid: grid as f32,
     }
 }
@@ -529,7 +560,7 @@ fn light_row(light: &zeroset_scene::light::Light) -> Light {
         | LightSource::Sphere { position, .. } => (1.0, position),
     };
     let sharpness = match light.shadow {
-        Shadow::None | Shadow::Hard => 0.0,
+        Shadow::None | Shadow::Hard | Shadow::Advected { .. } => 0.0,
         Shadow::Soft { sharpness } | Shadow::SoftClosest { sharpness } => sharpness,
     };
     let c = light.radiance;
@@ -544,7 +575,7 @@ fn light_row(light: &zeroset_scene::light::Light) -> Light {
     }
 }
 
-/// A light with an extent. Its shadow is sampled, or none.
+/// A light with an extent. Its shadow is sampled, advected, or none.
 fn lamp_row(light: &zeroset_scene::light::Light, lamp: &Lamp<f32>) -> Light {
     let kind = match lamp.shape {
         Shape::Rectangle => LAMPS[0],
@@ -552,7 +583,7 @@ fn lamp_row(light: &zeroset_scene::light::Light, lamp: &Lamp<f32>) -> Light {
         Shape::Sphere => LAMPS[2],
     };
     let shadow = match light.shadow {
-        Shadow::None => Shadow::None,
+        shadow @ (Shadow::None | Shadow::Advected { .. }) => shadow,
         Shadow::Hard | Shadow::Soft { .. } | Shadow::SoftClosest { .. } => Shadow::Hard,
     };
     Light {

@@ -191,8 +191,8 @@ shared! {
         around_rows: u32,
         /// First row of the volume that skylight is read from.
         sky_rows: u32,
-        /// Not used.
-        pad_a: u32,
+        /// First row of the volume that light was advected through.
+        advected_rows: u32,
         /// Not used.
         pad_b: u32,
         /// Not used.
@@ -227,7 +227,7 @@ shared! {
         luminance: f32,
         /// Its place in `zeroset_scene::settings::Shadow`.
         shadow: f32,
-        /// Sharpness of the penumbra.
+        /// Sharpness of the penumbra; how far before the surface advected light is read, scene units.
         sharpness: f32,
         /// What a lamp shows to one side, scene units squared.
         area: f32,
@@ -239,8 +239,8 @@ shared! {
         radius: f32,
         /// From the middle of a lamp to its upper edge.
         up: [f32; 3],
-        /// Not used.
-        pad: f32,
+        /// Number of the grid of what is left of advected light.
+        grid: f32,
     }
 
     /// An environment, as rows of the table. Where its images begin is the row of their first texel through all layers of the texture, and
@@ -328,7 +328,7 @@ shared! {
         pad_c: f32,
     }
 
-    /// The volume that skylight is read from, as rows of the table.
+    /// A volume that skylight or the shadow of a light is read from, as rows of the table.
     SkyVolume {
         /// Its first node.
         origin: [f32; 3],

@@ -58,6 +58,8 @@ pub(crate) struct Key {
     occlusion: BTreeSet<Case>,
     /// Whether any light casts a shadow.
     shadows: bool,
+    /// Whether any of them is read from a volume.
+    advected: bool,
     /// Whether any light has an extent, or comes from all around.
     lamps: bool,
     /// Whether light comes from all around, by an image.
@@ -150,8 +152,14 @@ impl std::hash::Hash for Case {
 }
 
 impl Key {
-    /// `rows`: those of the table.
-    pub(crate) fn new(scene: &Scene, program: &Program, form: FieldForm, rows: usize) -> Key {
+    /// `rows`: those of the table. `advected`: whether shadows are read from a volume.
+    pub(crate) fn new(
+        scene: &Scene,
+        program: &Program,
+        form: FieldForm,
+        rows: usize,
+        advected: bool,
+    ) -> Key {
         let structure = program.shared_structure();
         let methods = (scene.objects().iter())
             .filter_map(|o| o.occlusion.as_ref())
@@ -179,6 +187,7 @@ impl Key {
             occlusion: methods.filter_map(occlusion).collect(),
             shadows: scene.environment().is_some()
                 || scene.lights().iter().any(|l| casts(&l.shadow)),
+            advected,
             lamps: scene.lights().iter().any(|l| l.source.is_lamp())
                 || scene.environment().is_some(),
             around: scene.environment().is_some(),
@@ -217,7 +226,7 @@ impl Key {
         self.around || self.patterns.iter().any(|case| case.has_image)
     }
 
-    /// Whether the field or the sky has grids of samples.
+    /// Whether the field, the sky or a light has grids of samples.
     pub(crate) fn reads_grids(&self) -> bool {
         let structure = &self.structure;
         let mut steps = { &structure.colours }
@@ -225,7 +234,8 @@ impl Key {
             .chain([&structure.values])
             .flat_map(|code| &code.instructions);
         let skylight = self.occlusion.iter().filter_map(|case| case.stage);
-        { skylight }.any(|stage| matches!(stage.name, "ao_skylight" | "ao_curvature"))
+        self.advected
+            || { skylight }.any(|stage| matches!(stage.name, "ao_skylight" | "ao_curvature"))
             || steps.any(|step| step.operation == Operation::Leaf(code::SAMPLED))
     }
 
@@ -416,6 +426,13 @@ impl Key {
         } else {
             include_str!("stage/shadow_none.wgsl")
         });
+        if self.shadows {
+            stages.push(if self.advected {
+                include_str!("stage/shadow_advected.wgsl")
+            } else {
+                include_str!("stage/shadow_cast.wgsl")
+            });
+        }
         stages.push(if self.lamps {
             include_str!("stage/lamps.wgsl")
         } else {
@@ -450,6 +467,9 @@ impl Key {
         });
         if self.secondary() {
             names.extend(BEAMS);
+        }
+        if self.advected {
+            names.insert("advected_entry");
         }
         if self.lamps {
             names.extend(LAMPS);
@@ -800,14 +820,17 @@ fn normals(normals: Normals) -> &'static [Stage] {
 fn casts(shadow: &Shadow) -> bool {
     match shadow {
         Shadow::None => false,
-        Shadow::Hard | Shadow::Soft { .. } | Shadow::SoftClosest { .. } => true,
+        Shadow::Hard
+        | Shadow::Soft { .. }
+        | Shadow::SoftClosest { .. }
+        | Shadow::Advected { .. } => true,
     }
 }
 
 /// How `secondary.wgsl` finds the penumbra of a shadow, if it has one.
 fn penumbra(shadow: &Shadow) -> Option<&'static str> {
     match shadow {
-        Shadow::None | Shadow::Hard => None,
+        Shadow::None | Shadow::Hard | Shadow::Advected { .. } => None,
         Shadow::Soft { .. } => Some("soft_shadow(f, t, sharpness)"),
         Shadow::SoftClosest { .. } => Some("closest_shadow(f, z, r, t, sharpness)"),
     }

@@ -5,7 +5,7 @@ use crate::job::Job;
 use crate::lamps;
 use crate::march::ORDINAL;
 use crate::order::{self, Sorting};
-use crate::shadow::shadows;
+use crate::shadow::{advected, shadows};
 use crate::simd::{INSIDE, load, load_words, load3, splat, splat3, store, store3};
 use crate::surface::materials;
 use crate::tile::{Area, Hits, Scratch, Solid};
@@ -77,7 +77,17 @@ pub(crate) fn light<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
             lamps::look(s, sample, &lamp, light.shadow, number as u32, q);
             continue;
         }
-        shadows(s, sample.solid, sample.marched, light, q);
+        match sample.job.picture.advected(number) {
+            Some((volume, reading)) => advected(
+                s,
+                volume,
+                reading,
+                #[inline(always)]
+                |_, point| towards(&light.source, point),
+                q,
+            ),
+            None => shadows(s, sample.solid, sample.marched, light, q),
+        }
         add_light(
             s,
             sample,
@@ -208,7 +218,7 @@ fn occlude<S: Simd>(s: S, sample: &TileSample<'_>, q: &mut Scratch) {
             from += count;
             from - count..from
         });
-        ao::occlusion(s, solid, *method, picture.sky.as_deref(), found, q);
+        ao::occlusion(s, solid, *method, picture.volumes.sky.as_deref(), found, q);
         q.shared.give(&mut q.hits, given);
     }
     q.ends = ends;

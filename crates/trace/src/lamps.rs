@@ -7,7 +7,7 @@ use crate::path::{AimedLight, Distance, draw, random};
 use crate::paths::PathState;
 use crate::ray::WideRay;
 use crate::secondary::from_hits;
-use crate::shadow::Hard;
+use crate::shadow::{Hard, advected};
 use crate::simd::{INSIDE, SLACK, Sheet, TILE_RAYS, load, load3, splat, store, store3};
 use crate::tile::Scratch;
 use fearless_simd::{Simd, prelude::*};
@@ -114,7 +114,26 @@ pub(crate) fn look<S: Simd>(
         let light = lamp.strength * (aimed.falloff * left);
         q.aim.set(i, aimed.to, aimed.distance, light, counted);
     }
-    find(s, sample, shadow, q);
+    match sample.job.picture.advected(number as usize) {
+        Some((volume, reading)) => {
+            let columns = std::mem::take(&mut q.aim.to);
+            let distances = std::mem::take(&mut q.aim.distance);
+            let [x, y, z] = &columns;
+            advected(
+                s,
+                volume,
+                reading,
+                #[inline(always)]
+                |i, _| {
+                    let to = v3(load(s, x, i), load(s, y, i), load(s, z, i));
+                    (to, load(s, &distances, i))
+                },
+                q,
+            );
+            (q.aim.to, q.aim.distance) = (columns, distances);
+        }
+        None => find(s, sample, shadow, q),
+    }
     add(s, sample, lamp.visible, q);
 }
 

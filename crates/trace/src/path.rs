@@ -173,9 +173,10 @@ fn look<S: Simd>(s: S, sample: &TileSample<'_>, light: &Light, number: u32, q: &
     let all = 0..q.hits.count;
     q.counts.shadow += match light.shadow {
         Shadow::None => unshadowed(s, light, q),
-        Shadow::Hard | Shadow::Soft { .. } | Shadow::SoftClosest { .. } => {
-            from_hits(s, Hard, &aim, sample.marched, all, q)
-        }
+        Shadow::Hard
+        | Shadow::Soft { .. }
+        | Shadow::SoftClosest { .. }
+        | Shadow::Advected { .. } => from_hits(s, Hard, &aim, sample.marched, all, q),
     };
     for i in 0..q.hits.count {
         let number = (q.hits.word[i] & ORDINAL) as usize;

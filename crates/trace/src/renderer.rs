@@ -26,6 +26,7 @@ use zeroset_scene::progressive::{MOST, SampleMap};
 use zeroset_scene::render::{Evaluations, Observer, Prepared, RenderError, Renderer, Statistics};
 use zeroset_scene::scene::Scene;
 use zeroset_scene::settings::{Antialias, Occlusion, Settings};
+use zeroset_shade::advection::{LightVolume, Reading};
 use zeroset_shade::air::Air;
 use zeroset_shade::closed::{Closing, at_eye, begin_outside};
 use zeroset_shade::coat::{Coat, compiled};
@@ -98,15 +99,20 @@ impl CpuRenderer {
         PreparedScene::new(self.clone(), scene)
     }
 
-    /// See [`SkyVolume::renewed`]: on the threads of this renderer.
-    fn sky(
+    /// See [`SkyVolume::renewed`] and [`LightVolume::renewed`]: on the threads of this renderer.
+    fn volumes(
         &self,
-        before: Option<&Arc<SkyVolume>>,
+        before: &Volumes,
         scene: &Scene,
         program: &Program,
-    ) -> Result<Option<Arc<SkyVolume>>, RenderError> {
-        let make = || SkyVolume::renewed(before, scene, program);
-        Ok(self.pool.install(make)?)
+    ) -> Result<Volumes, RenderError> {
+        let make = || {
+            Ok(Volumes {
+                sky: SkyVolume::renewed(before.sky.as_ref(), scene, program)?,
+                light: LightVolume::renewed(before.light.as_ref(), scene, program)?,
+            })
+        };
+        self.pool.install(make)
     }
 
     /// Bytes that a picture of the scene takes while these planes are rendered, apart from the scene itself.
@@ -118,6 +124,15 @@ impl CpuRenderer {
         };
         accumulator::bytes(size, planes) + scratch
     }
+}
+
+/// Volumes that methods read instead of the field, where they do.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Volumes {
+    /// What skylight is read from.
+    pub(crate) sky: Option<Arc<SkyVolume>>,
+    /// What lights are advected through.
+    light: Option<Arc<LightVolume>>,
 }
 
 impl Renderer for CpuRenderer {
@@ -209,8 +224,8 @@ pub struct PreparedScene {
     pub(crate) air: Air<f32>,
     /// Light from all around, by an image.
     pub(crate) environment: Option<Arc<EnvironmentMap>>,
-    /// The volume that skylight is read from, where a method does that.
-    pub(crate) sky: Option<Arc<SkyVolume>>,
+    /// What is read instead of the field.
+    pub(crate) volumes: Volumes,
     /// The lamps that rays may meet.
     pub(crate) lamps: Vec<Lamp<f32>>,
     /// Whether rays go on from any material.
@@ -240,8 +255,14 @@ impl PreparedScene {
             region,
         };
         let environment = EnvironmentMap::renewed(None, &scene);
-        let sky = renderer.sky(None, &scene, &field.program)?;
-        Ok(PreparedScene::of(renderer, scene, field, environment, sky))
+        let volumes = renderer.volumes(&Volumes::default(), &scene, &field.program)?;
+        Ok(PreparedScene::of(
+            renderer,
+            scene,
+            field,
+            environment,
+            volumes,
+        ))
     }
 
     fn of(
@@ -249,7 +270,7 @@ impl PreparedScene {
         scene: Arc<Scene>,
         field: Compiled,
         environment: Option<Arc<EnvironmentMap>>,
-        sky: Option<Arc<SkyVolume>>,
+        volumes: Volumes,
     ) -> PreparedScene {
         let Compiled {
             program,
@@ -295,7 +316,7 @@ impl PreparedScene {
             air: Air::of(scene.sky(), scene.lights()),
             lamps: lamp::visible(scene.lights()),
             environment,
-            sky,
+            volumes,
             renderer,
             skins: has_skins(&scene, &program),
             scene,
@@ -321,7 +342,15 @@ impl PreparedScene {
 
     /// Whether the sky's light has the colours of what is near.
     pub(crate) fn is_tinted(&self) -> bool {
-        self.sky.as_ref().is_some_and(|sky| sky.is_coloured)
+        let sky = self.volumes.sky.as_ref();
+        sky.is_some_and(|sky| sky.is_coloured)
+    }
+
+    /// The volume that light number `number` was advected through, where it was, and how it is read.
+    pub(crate) fn advected(&self, number: usize) -> Option<(&LightVolume, &Reading)> {
+        let volume = self.volumes.light.as_deref()?;
+        let reading = volume.readings.get(number)?.as_ref()?;
+        Some((volume, reading))
     }
 
     /// Memory for a tile.
@@ -498,9 +527,9 @@ impl Prepared for PreparedScene {
         let fits = field.program.structure() == self.program.structure();
         let environment = EnvironmentMap::renewed(self.environment.as_ref(), &scene);
         let renderer = self.renderer.clone();
-        let sky = renderer.sky(self.sky.as_ref(), &scene, &field.program)?;
+        let volumes = renderer.volumes(&self.volumes, &scene, &field.program)?;
         let spare = std::mem::take(&mut self.spare);
-        *self = PreparedScene::of(renderer, scene, field, environment, sky);
+        *self = PreparedScene::of(renderer, scene, field, environment, volumes);
         if fits {
             self.spare = spare;
         }

@@ -1,13 +1,14 @@
 //! Shadows: how much of a light reaches the hits.
 
 use crate::secondary::{Aim, Penumbra, from_hits};
-use crate::simd::{load3, splat, store};
+use crate::simd::{INSIDE, along, load, load_words, load3, splat, store};
 use crate::tile::{Scratch, Solid};
 use fearless_simd::{Simd, prelude::*};
 use zeroset_number::lanes::LaneMask;
 use zeroset_number::{Lanes, Ops, Real, Vec3};
 use zeroset_scene::light::{Light, Source};
 use zeroset_scene::settings::Shadow;
+use zeroset_shade::advection::{LightVolume, Reading};
 use zeroset_shade::light::towards;
 use zeroset_shade::shadow::{DARK, soft, soft_closest};
 
@@ -140,7 +141,36 @@ pub(crate) fn shadows<S: Simd>(
         Shadow::SoftClosest { sharpness } => {
             from_hits(s, Closest { sharpness }, &aim, solid, all, q)
         }
+        // none was made: nothing is in its way
+        Shadow::Advected { .. } => unshadowed(s, light, q),
     };
+}
+
+/// Finds how much of a light reaches every hit by the volume that it was advected through: 0 where the surface faces away. `aim` gives the direction to the light and
+/// its distance from the hits from a number on, whose rays would begin at a place. From inside a solid it is seen as if there were none.
+pub(crate) fn advected<S: Simd>(
+    s: S,
+    volume: &LightVolume,
+    reading: &Reading,
+    aim: impl Fn(usize, Vec3<Lanes<S>>) -> (Vec3<Lanes<S>>, Lanes<S>),
+    q: &mut Scratch,
+) {
+    s.vectorize(
+        #[inline(always)]
+        || {
+            let hits = &q.hits;
+            for i in (0..hits.count).step_by(S::f32s::LEN) {
+                let (point, normal) = (load3(s, &hits.point, i), load3(s, &hits.normal, i));
+                let (to, distance) = aim(i, along(point, normal, load(s, &hits.offset, i)));
+                let side = load_words(s, &hits.word, i) & INSIDE;
+                let inside = LaneMask(side.simd_gt(S::u32s::splat(s, 0)));
+                let left = volume.left(reading, point, normal, to, distance);
+                let left = Lanes::select(inside, splat(s, 1.0), left);
+                let facing = normal.dot(to).above(0.0);
+                store(Lanes::select(facing, left, splat(s, 0.0)), &mut q.lit, i);
+            }
+        },
+    );
 }
 
 pub(crate) fn unshadowed<S: Simd>(s: S, light: &Light, q: &mut Scratch) -> u64 {

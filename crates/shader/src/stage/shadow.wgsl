@@ -9,6 +9,9 @@ fn shadow(at: Surface, light: Light, to: vec3f, distance: f32) -> f32 {
     if (shadow_kind(light) == SHADOW_NONE || at.side < 0.0) {
         return 1.0;
     }
+    if (shadow_kind(light) == SHADOW_ADVECTED) {
+        return advected(at, light, to, distance);
+    }
     let traced = secondary_ray(at, to, distance, shadow_kind(light), light.sharpness);
     counted[COUNT_SHADOW] += traced.samples;
     return traced.light;

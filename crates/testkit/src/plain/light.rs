@@ -60,7 +60,8 @@ impl Plain<'_> {
                     _ if at.normal.dot(to) <= 0.0 => 0.0,
                     Shadow::None => 1.0,
                     _ if at.side < 0.0 => 1.0,
-                    _ => self.hard(probe, at, to, distance, |_| 0.0),
+                    _ => (self.advected(number as usize, at, to, distance))
+                        .unwrap_or_else(|| self.hard(probe, at, to, distance, |_| 0.0)),
                 };
                 let (n, d) = (field(at.shown), field(at.d));
                 let answer = response(
@@ -95,6 +96,10 @@ impl Plain<'_> {
                 Shadow::Soft { sharpness } => self.soft(probe, at, to, distance, sharpness, false),
                 Shadow::SoftClosest { sharpness } => {
                     self.soft(probe, at, to, distance, sharpness, true)
+                }
+                Shadow::Advected { .. } => {
+                    let left = self.advected(number as usize, at, to, distance);
+                    left.unwrap_or(1.0)
                 }
             };
             let (to, distance) = Self::towards(&light.source, at.p);

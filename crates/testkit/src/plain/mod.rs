@@ -5,6 +5,7 @@
 //! marches. All that the stream does in its own way is written anew here: marching (without cones), hits, normals, occlusion,
 //! shadows, samples and their filter.
 
+mod advection;
 mod ao;
 pub mod dense;
 mod light;
@@ -154,6 +155,7 @@ pub fn render<P: Probe>(scene: &Scene, quality: &Quality, probe: impl Fn() -> P 
     let settings = scene.settings();
     let [width, height] = settings.size;
     let sky = skylight::Volume::of(scene, quality, &mut probe());
+    let lit = advection::Volume::of(scene, quality, &mut probe());
     let plain = Plain {
         scene,
         settings,
@@ -163,6 +165,7 @@ pub fn render<P: Probe>(scene: &Scene, quality: &Quality, probe: impl Fn() -> P 
         fallback: Material::default(),
         around: EnvironmentMap::renewed(None, scene),
         sky,
+        lit,
     };
     let samples = plain.samples();
     let rows: Vec<Vec<Sample>> = (0..height)
@@ -186,6 +189,8 @@ struct Plain<'a> {
     around: Option<Arc<EnvironmentMap>>,
     /// The volume that skylight is read from.
     sky: Option<skylight::Volume>,
+    /// The volume that lights are advected through.
+    lit: Option<advection::Volume>,
 }
 
 /// Rays along a side of a pixel of which the covered parts are wanted: that many squared are close to the area.

@@ -9,9 +9,9 @@ use zeroset_scene::settings::Occlusion;
 use zeroset_shade::skylight::{Extent, average, wanted};
 
 /// Samples of one mip.
-struct Mip {
-    nodes: [usize; 3],
-    values: Vec<f32>,
+pub(super) struct Mip {
+    pub(super) nodes: [usize; 3],
+    pub(super) values: Vec<f32>,
 }
 
 impl Mip {
@@ -20,7 +20,7 @@ impl Mip {
     }
 
     /// Interpolated at a place in its voxels.
-    fn read(&self, place: Vec3) -> f32 {
+    pub(super) fn read(&self, place: Vec3) -> f32 {
         let (mut low, mut t) = ([0; 3], [0.0; 3]);
         for axis in 0..3 {
             let c = place[axis].clamp(0.0, (self.nodes[axis] - 1) as f32);

@@ -91,6 +91,14 @@ fn skylight(scene: &mut SceneParts, param: &str, times: f32) {
     }
 }
 
+fn advected(scene: &mut SceneParts, param: &str, times: f32) {
+    let method = &mut scene.lights[0].shadow;
+    if let Some(Value::Real(x)) = method.get(param) {
+        let allowed = if param == "spread" { 1.0 } else { 8.0 };
+        method.put(param, Value::Real((x * times).min(allowed)));
+    }
+}
+
 /// What is wrong, how, and the check that must notice.
 type SceneFault = (&'static str, fn(&mut SceneParts), &'static str);
 
@@ -209,6 +217,30 @@ const SKYLIGHT_IN_SCENES: [SceneFault; 3] = [
         "light beside a red wall",
     ),
 ];
+
+/// The same, of light that flows.
+const FLOW_IN_SCENES: [SceneFault; 3] = [
+    (
+        "light that is blurred too much",
+        |s| advected(s, "spread", 1.5),
+        "the edge of a shadow that flowed",
+    ),
+    (
+        "light that is read farther from the floor",
+        |s| advected(s, "bias", 6.0),
+        "the edge of a shadow that flowed",
+    ),
+    (
+        "light that is read within the surface",
+        |s| advected(s, "bias", 0.2),
+        "a ball in light that flows",
+    ),
+];
+
+#[test]
+fn faults_of_light_that_flows_in_scenes_are_noticed() {
+    noticed_in_scenes(&FLOW_IN_SCENES);
+}
 
 #[test]
 fn faults_in_scenes_are_noticed() {
@@ -582,6 +614,33 @@ const SKYLIGHT_IN_SHADERS: [ShaderFault; 8] = [
         "where skylight comes from",
     ),
 ];
+
+/// The same, of light that flows.
+const FLOW_IN_SHADERS: [ShaderFault; 3] = [
+    (
+        "light half a voxel aside",
+        "(p - volume.origin) / volume.voxel",
+        "(p - volume.origin) / volume.voxel - 0.5",
+        "the edge of a shadow that flowed",
+    ),
+    (
+        "no shadow beyond the volume",
+        "if (t < 0.0 || t * volume.voxel > distance)",
+        "if (t != 0.0)",
+        "a shadow beyond its volume",
+    ),
+    (
+        "light that is read on the surface itself",
+        "at.point + at.normal * light.sharpness",
+        "at.point",
+        "a ball in light that flows",
+    ),
+];
+
+#[test]
+fn faults_of_light_that_flows_in_shaders_are_noticed() {
+    noticed_in_shaders(&FLOW_IN_SHADERS);
+}
 
 #[test]
 fn faults_in_shaders_are_noticed() {

@@ -8,6 +8,7 @@
 
 #![allow(unreachable_pub, reason = "the modules of a test are its own")]
 
+mod advection;
 mod around;
 mod camera;
 mod coat;
@@ -55,7 +56,10 @@ fn checks() -> Vec<Check> {
 
 fn check_named(name: &str) -> Check {
     let own = checks().into_iter();
-    let mut all = own.chain(paths::CHECKS).chain(skylight::CHECKS);
+    let mut all = own
+        .chain(paths::CHECKS)
+        .chain(skylight::CHECKS)
+        .chain(advection::CHECKS);
     let found = all.find(|c| c.name == name);
     found.unwrap_or_else(|| panic!("no check is called {name}"))
 }
@@ -105,6 +109,21 @@ fn skylight_is_right_on_the_gpu() {
         return;
     };
     right(&skylight::CHECKS, &|scene| on(&gpu, scene));
+}
+
+#[test]
+fn light_that_flows_is_right() {
+    let renderer = CpuRenderer::new(None).unwrap();
+    right(&advection::CHECKS, &|scene| on(&renderer, scene));
+    right(&advection::CHECKS, &|scene| on_plain(&renderer, scene));
+}
+
+#[test]
+fn light_that_flows_is_right_on_the_gpu() {
+    let Some(gpu) = testing::renderer("known values of light that flows on the GPU") else {
+        return;
+    };
+    right(&advection::CHECKS, &|scene| on(&gpu, scene));
 }
 
 #[test]

@@ -143,6 +143,11 @@ fn shadows() {
         Shadow::Soft { sharpness: 4.0 },
         Shadow::Soft { sharpness: 64.0 },
         Shadow::SoftClosest { sharpness: 12.0 },
+        Shadow::Advected {
+            resolution: 32,
+            spread: 0.5,
+            bias: 2.0,
+        },
     ] {
         for mut scene in [tomczak(), blend()] {
             scene
