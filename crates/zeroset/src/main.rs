@@ -17,6 +17,7 @@ mod reference;
 mod render;
 mod report;
 mod scene;
+mod shares;
 mod simplex;
 mod survey;
 mod values;

@@ -6,6 +6,7 @@ use crate::estimate::{self, Cost};
 use crate::failure::{Exit, Failure};
 use crate::json;
 use crate::reference::shortest;
+use crate::shares::{self, Share};
 use crate::survey;
 use serde::Serialize;
 use std::collections::{BTreeSet, HashSet};
@@ -42,6 +43,8 @@ struct Findings {
     inside: Option<String>,
     /// What the picture will cost.
     cost: Cost,
+    /// What each object is of that, the largest share first.
+    shares: Vec<Share>,
 }
 
 /// A bound that is looser than this is worth a word.
@@ -114,7 +117,8 @@ pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
         .transpose()
         .map_err(|error| invalid(error.to_string()))?;
     let cost = estimate::cost(&loaded.scene)?;
-    let findings = findings(&loaded, program.as_ref(), cost);
+    let shares = shares::shares(&loaded.scene)?;
+    let findings = findings(&loaded, program.as_ref(), cost, shares);
     if args.json {
         console.emit(&json::pretty(&findings)?)
     } else {
@@ -122,7 +126,12 @@ pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<(), Failure> {
     }
 }
 
-fn findings(loaded: &Loaded, program: Option<&Program>, cost: Cost) -> Findings {
+fn findings(
+    loaded: &Loaded,
+    program: Option<&Program>,
+    cost: Cost,
+    shares: Vec<Share>,
+) -> Findings {
     let scene = &loaded.scene;
     let objects: Vec<ObjectFinding> = (scene.objects().iter())
         .map(|object| {
@@ -194,6 +203,7 @@ fn findings(loaded: &Loaded, program: Option<&Program>, cost: Cost) -> Findings 
         coarse: survey::coarse(scene),
         inside: survey::around_camera(scene).map(str::to_owned),
         cost,
+        shares,
         instructions: program.map(|p| p.structure().values.instructions.len()),
     }
 }
@@ -403,6 +413,7 @@ fn words(findings: &Findings) -> String {
             plural(instructions)
         );
     }
+    out.push_str(&shares::words(&findings.shares, name));
     out + &findings.cost.words([findings.width, findings.height])
 }
 
