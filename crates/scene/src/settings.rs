@@ -75,7 +75,7 @@ choice! {
         },
         /// Lit or not: one ray towards the light.
         Hard("hard", "Hard", "Tomczak 2012, 3.2"),
-        /// Light that flows through a volume around what has an end: soft shadows without rays, wherever the light is.
+        /// Light that flows through a volume: soft shadows without rays, wherever the light is.
         Advected("advected", "Advected", "Evans 2006, 9.9 and figure 12") {
             /// Voxels along the longest side of the volume around what has an end.
             resolution: u32 = 64, Param::new("Resolution", Unit::Count, Allowed::between(16.0, 160.0)).usual(16.0, 160.0).logarithmic();

@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use zeroset_catalogue::entries::catalogue;
 use zeroset_catalogue::op::code;
 use zeroset_catalogue::tape::{Instruction, Operation};
+use zeroset_field::closed::Split;
 use zeroset_field::field::Field;
 use zeroset_field::program::{Limits, Program};
 use zeroset_scene::render::RenderError;
@@ -73,7 +74,12 @@ pub(crate) fn shares(scene: &Scene) -> Result<Vec<Share>, RenderError> {
                 of_instructions,
                 of_steps,
                 instructions: own[k],
-                advice: advice(&object.field, programs[k].as_ref(), of_instructions, of_steps),
+                advice: advice(
+                    &object.field,
+                    programs[k].as_ref(),
+                    of_instructions,
+                    of_steps,
+                ),
             }
         })
         .collect();
@@ -84,14 +90,21 @@ pub(crate) fn shares(scene: &Scene) -> Result<Vec<Share>, RenderError> {
 /// Steps that each object is the reason for, of rays through a grid of places of the picture; none where rays do not go by steps.
 fn steps(scene: &Scene, instructions: f64) -> Result<Vec<u64>, RenderError> {
     let mut steps = vec![0_u64; scene.objects().len()];
-    if scene.objects().iter().any(|object| object.field.facts().unbounded) {
+    if scene
+        .objects()
+        .iter()
+        .any(|object| object.field.facts().unbounded)
+    {
         return Ok(steps);
     }
     let mut plain = scene.clone();
     // rays from the eye are all that is followed
     plain.edit(|parts| {
         parts.settings.occlusion = Occlusion::None;
-        parts.objects.iter_mut().for_each(|object| object.occlusion = None);
+        parts
+            .objects
+            .iter_mut()
+            .for_each(|object| object.occlusion = None);
         parts.lights.clear();
     })?;
     let prepared = CpuRenderer::new(Some(1))?.prepare_scene(plain.into())?;
@@ -102,6 +115,9 @@ fn steps(scene: &Scene, instructions: f64) -> Result<Vec<u64>, RenderError> {
         let along = u64::from(n) * rays.min(u64::from(longer)) / u64::from(longer);
         along.max(1) as u32
     });
+    let met: Vec<bool> = (scene.objects().iter())
+        .map(|object| is_met(&object.field))
+        .collect();
     let most = STEPS.min(scene.settings().max_steps as usize);
     for row in 0..rows {
         for column in 0..columns {
@@ -112,11 +128,17 @@ fn steps(scene: &Scene, instructions: f64) -> Result<Vec<u64>, RenderError> {
             let pixel = [middle(column, columns, size[0]), middle(row, rows, size[1])];
             let why = prepared.why(size, pixel, most);
             for object in why.steps.iter().filter_map(|step| step.object) {
-                steps[object] += 1;
+                steps[object] += u64::from(!met[object]);
             }
         }
     }
     Ok(steps)
+}
+
+/// Whether it is a floor or a wall, which rays meet where a formula says, without steps (Keinert et al. 2014, section 4). Balls are met so too, as long
+/// as a scene has few of them.
+fn is_met(field: &Field) -> bool {
+    matches!(Split::of(field, 0), Ok(Some(Split { rest: None, .. })))
 }
 
 fn program(field: &Field) -> Option<Program> {
@@ -130,9 +152,13 @@ fn instructions(program: &Program) -> &[Instruction] {
 /// What makes an object slow, and what to do, in a sentence.
 fn advice(field: &Field, program: Option<&Program>, of_instructions: f64, of_steps: f64) -> String {
     let facts = field.facts();
-    let endless = (0..3).any(|k| !(facts.bounds.min[k].is_finite() && facts.bounds.max[k].is_finite()));
+    let endless =
+        (0..3).any(|k| !(facts.bounds.min[k].is_finite() && facts.bounds.max[k].is_finite()));
     if facts.unbounded {
         return "no slope holds for all of it, so rays search it by ranges: keep roots, poles and jumps away from its surface, or state `slope`".into();
+    }
+    if is_met(field) {
+        return "rays meet it where a formula says, without steps".into();
     }
     let own = program.map_or(0, |p| instructions(p).len());
     let loose = survey::looseness(field).unwrap_or(1.0);
@@ -144,7 +170,9 @@ fn advice(field: &Field, program: Option<&Program>, of_instructions: f64, of_ste
     }
     if of_instructions >= LARGE_SHARE && own > FEW {
         let what = program.and_then(most_frequent);
-        let most = what.map_or_else(String::new, |(name, count)| format!(", {count} of them {name}"));
+        let most = what.map_or_else(String::new, |(name, count)| {
+            format!(", {count} of them {name}")
+        });
         return format!(
             "each step of each ray runs its {own} instructions{most}: many equal parts are few as repeat(...) or polar(...), and what stands still \
              can be baked to samples (zeroset bake)"
@@ -154,7 +182,8 @@ fn advice(field: &Field, program: Option<&Program>, of_instructions: f64, of_ste
         return "it has no end, so rays that pass it go along it: cut it with a box where it is not seen".into();
     }
     if of_steps >= LARGE_SHARE {
-        return "rays take most steps at its edges and beside it: it is large in the picture".into();
+        return "rays take most steps at its edges and beside it: it is large in the picture"
+            .into();
     }
     "nothing stands out".into()
 }
@@ -188,11 +217,13 @@ fn most_frequent(program: &Program) -> Option<(&'static str, usize)> {
 
 /// For a person: nothing where there are no objects.
 pub(crate) fn words(shares: &[Share], name: impl Fn(&str) -> String) -> String {
-    const SHOWN: usize = 12;
+    const SHOWN: usize = 6;
     if shares.is_empty() {
         return String::new();
     }
-    let mut out = String::from("Time by object (counted: half by instructions, half by the steps that it makes rays take):\n");
+    let mut out = String::from(
+        "Time by object (counted: half by instructions, half by the steps that it makes rays take):\n",
+    );
     let percent = |x: f64| format!("{:.0} %", 100.0 * x);
     for share in shares.iter().take(SHOWN) {
         out += &format!(
@@ -219,14 +250,21 @@ mod tests {
     use zeroset_language::load::{Language, Options, load_text};
 
     fn of(text: &str) -> Vec<Share> {
-        let loaded = load_text("t.star", text, Language::Starlark, None, &Options::default());
+        let loaded = load_text(
+            "t.star",
+            text,
+            Language::Starlark,
+            None,
+            &Options::default(),
+        );
         shares(&loaded.expect("a scene").scene).expect("shares")
     }
 
     #[test]
     fn shares_are_counted_and_sum_to_one() {
         let many = "union([sphere(0.1).move(x = i * 0.3) for i in range(60)])";
-        let text = format!("show({many}, name = \"row\")\nshow(plane().move(y = -1), name = \"floor\")");
+        let text =
+            format!("show({many}, name = \"row\")\nshow(plane().move(y = -1), name = \"floor\")");
         let found = of(&text);
         assert_eq!(found[0].object, "row");
         assert!(found[0].of_instructions > 0.9 && found[0].advice.contains("repeat"));
@@ -237,7 +275,9 @@ mod tests {
 
     #[test]
     fn a_loose_bound_is_named() {
-        let found = of("show(field(lambda p: length(p) - 1, size = 3, slope = 8), name = \"ball\")\nshow(sphere(0.1).move(x = 3))");
+        let found = of(
+            "show(field(lambda p: length(p) - 1, size = 3, slope = 8), name = \"ball\")\nshow(sphere(0.1).move(x = 3))",
+        );
         assert_eq!(found[0].object, "ball");
         assert!(found[0].advice.contains("slope"), "{}", found[0].advice);
         assert!(found[0].of_steps > 0.5);
