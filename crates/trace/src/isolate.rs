@@ -169,7 +169,7 @@ impl<'p> Isolation<'p> {
             self.left.push(Remains { from, to, code });
         }
         let range = left.range;
-        Some(if line.inside { -range.hi } else { range.lo }.into())
+        Some(if line.inside { -range.hi } else { range.lo })
     }
 
     /// Whether the value may jump: ranges of it say nothing then.
