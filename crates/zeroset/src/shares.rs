@@ -40,8 +40,8 @@ pub(crate) struct Share {
     pub time: f64,
     /// Share of the instructions of an evaluation.
     pub of_instructions: f64,
-    /// Share of the steps of rays that it is the reason for.
-    pub of_steps: f64,
+    /// Share of the steps of rays that it is the reason for; none where rays do not go by steps.
+    pub of_steps: Option<f64>,
     /// Instructions that it takes by itself.
     pub instructions: usize,
     /// What to do about it.
@@ -63,23 +63,16 @@ pub(crate) fn shares(scene: &Scene) -> Result<Vec<Share>, RenderError> {
     let mut shares: Vec<Share> = (scene.objects().iter().enumerate())
         .map(|(k, object)| {
             let of_instructions = own[k] as f64 / all_instructions;
-            // where no steps were counted, instructions are all there is to go by
-            let of_steps = match all_steps > 0.0 {
-                true => steps[k] as f64 / all_steps,
-                false => of_instructions,
-            };
+            let of_steps = (all_steps > 0.0).then(|| steps[k] as f64 / all_steps);
+            // where none were counted, instructions are all there is to go by
+            let share = of_steps.unwrap_or(of_instructions);
             Share {
                 object: object.name.clone(),
-                time: 0.5 * (of_steps + of_instructions),
+                time: 0.5 * (share + of_instructions),
                 of_instructions,
                 of_steps,
                 instructions: own[k],
-                advice: advice(
-                    &object.field,
-                    programs[k].as_ref(),
-                    of_instructions,
-                    of_steps,
-                ),
+                advice: advice(&object.field, programs[k].as_ref(), of_instructions, share),
             }
         })
         .collect();
@@ -227,13 +220,13 @@ pub(crate) fn words(shares: &[Share], name: impl Fn(&str) -> String) -> String {
     let percent = |x: f64| format!("{:.0} %", 100.0 * x);
     for share in shares.iter().take(SHOWN) {
         out += &format!(
-            "  {:>5}  {}: {} instruction{} ({}), {} of the steps; {}.\n",
+            "  {:>5}  {}: {} instruction{} ({}){}; {}.\n",
             percent(share.time),
             name(&share.object),
             share.instructions,
             if share.instructions == 1 { "" } else { "s" },
             percent(share.of_instructions),
-            percent(share.of_steps),
+            (share.of_steps).map_or_else(String::new, |x| format!(", {} of the steps", percent(x))),
             share.advice
         );
     }
@@ -280,6 +273,6 @@ mod tests {
         );
         assert_eq!(found[0].object, "ball");
         assert!(found[0].advice.contains("slope"), "{}", found[0].advice);
-        assert!(found[0].of_steps > 0.5);
+        assert!(found[0].of_steps.is_some_and(|share| share > 0.5));
     }
 }
