@@ -40,7 +40,7 @@ pub(crate) struct Share {
     pub time: f64,
     /// Share of the instructions of an evaluation.
     pub of_instructions: f64,
-    /// Share of the steps of rays that it is the reason for; none where rays do not go by steps.
+    /// Share of the steps of rays that it is the reason for; none where they were not counted.
     pub of_steps: Option<f64>,
     /// Instructions that it takes by itself.
     pub instructions: usize,
@@ -80,16 +80,16 @@ pub(crate) fn shares(scene: &Scene) -> Result<Vec<Share>, RenderError> {
     Ok(shares)
 }
 
-/// Steps that each object is the reason for, of rays through a grid of places of the picture; none where rays do not go by steps.
+/// Steps that each object is the reason for, of rays through a grid of places of the picture; none where rays do not go by steps, or where so
+/// few could be counted in time that they say nothing.
 fn steps(scene: &Scene, instructions: f64) -> Result<Vec<u64>, RenderError> {
     let mut steps = vec![0_u64; scene.objects().len()];
-    if scene
-        .objects()
-        .iter()
-        .any(|object| object.field.facts().unbounded)
-    {
+    let has_steps = (scene.objects().iter()).all(|object| !object.field.facts().unbounded);
+    let rays = (WORK / instructions).sqrt().min(RAYS[1]);
+    if !has_steps || rays < RAYS[0] {
         return Ok(steps);
     }
+    let rays = rays as u64;
     let mut plain = scene.clone();
     // rays from the eye are all that is followed
     plain.edit(|parts| {
@@ -103,7 +103,6 @@ fn steps(scene: &Scene, instructions: f64) -> Result<Vec<u64>, RenderError> {
     let prepared = CpuRenderer::new(Some(1))?.prepare_scene(plain.into())?;
     let size = scene.settings().size;
     let longer = size[0].max(size[1]).max(1);
-    let rays = (WORK / instructions).sqrt().clamp(RAYS[0], RAYS[1]) as u64;
     let [columns, rows] = size.map(|n| {
         let along = u64::from(n) * rays.min(u64::from(longer)) / u64::from(longer);
         along.max(1) as u32

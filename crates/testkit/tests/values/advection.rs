@@ -80,15 +80,20 @@ fn beyond(draw: Draw) -> Found {
     shadow(draw, &text, 0.8, 9)
 }
 
-/// A ball throws no shadow on the side that light comes to.
-fn own(draw: Draw) -> Found {
-    let eye = Eye {
+/// Who looks down at the origin.
+fn above() -> Eye {
+    Eye {
         at: DVec3::new(1.0, 2.2, 3.2),
         target: DVec3::ZERO,
         up: DVec3::Y,
         lens: Lens::Fov(45.0),
         size: SIZE,
-    };
+    }
+}
+
+/// A ball throws no shadow on the side that light comes to.
+fn own(draw: Draw) -> Found {
+    let eye = above();
     let lamp = DVec3::new(0.4, 2.6, 0.9);
     for kind in ["point_light(", "sphere_light(radius = 0.1, "] {
         let text = format!(
@@ -106,13 +111,7 @@ fn own(draw: Draw) -> Found {
 
 /// Nothing stands between a floor and a lamp, near or far, within the volume or beyond it.
 fn bare(draw: Draw) -> Found {
-    let eye = Eye {
-        at: DVec3::new(1.0, 2.2, 3.2),
-        target: DVec3::ZERO,
-        up: DVec3::Y,
-        lens: Lens::Fov(45.0),
-        size: SIZE,
-    };
+    let eye = above();
     for light in [
         "point_light(position = (0.3, 1, -0.2), shadow = advected(resolution = 32))",
         "sun(direction = (2, -1, 0.3), shadow = advected(resolution = 32, spread = 1))",
