@@ -266,6 +266,13 @@ mod tests {
     }
 
     #[test]
+    fn steps_of_large_scenes_are_not_counted() {
+        let found = of("show(union([sphere(0.1).move(x = i) for i in range(9000)]))");
+        assert!(found.iter().all(|share| share.of_steps.is_none()));
+        assert!((found.iter().map(|s| s.time).sum::<f64>() - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
     fn a_loose_bound_is_named() {
         let found = of(
             "show(field(lambda p: length(p) - 1, size = 3, slope = 8), name = \"ball\")\nshow(sphere(0.1).move(x = 3))",
