@@ -10,7 +10,8 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 use zeroset_catalogue::bounds::{Aabb, Exactness};
-use zeroset_catalogue::entries::catalogue;
+use zeroset_catalogue::entries::{PrimitiveEntry, catalogue};
+use zeroset_catalogue::flat::strips;
 use zeroset_catalogue::op::{code, reads_point};
 use zeroset_catalogue::tape::{Code, Instruction, Operation};
 use zeroset_catalogue::{Dimension, Stretch};
@@ -211,9 +212,7 @@ impl<'l> Lowering<'l> {
             return Ok(value);
         }
         let value = match field.node() {
-            Node::Primitive { entry, params } => {
-                self.leaf(entry.code, point, &centred([0.0; 3], params))?
-            }
+            Node::Primitive { entry, params } => self.primitive(entry, [0.0; 3], params, point)?,
             Node::Map {
                 entry,
                 params,
@@ -344,6 +343,20 @@ impl<'l> Lowering<'l> {
         self.change(code::SCALE, value, INPUT, &[scale])
     }
 
+    /// A primitive around a centre. Contours of many pieces become trees of them, with the same distances.
+    fn primitive(
+        &mut self,
+        entry: &PrimitiveEntry,
+        centre: [f64; 3],
+        params: &[f64],
+        point: u32,
+    ) -> Result<u32, CompileError> {
+        match strips(entry.info.name, params) {
+            Some(trees) => self.leaf(code::STRIPS, point, &centred(centre, &trees)),
+            None => self.leaf(entry.code, point, &centred(centre, params)),
+        }
+    }
+
     fn place(
         &mut self,
         placement: &Placement,
@@ -356,7 +369,7 @@ impl<'l> Lowering<'l> {
                 self.field(shape, placed)?
             }
             Node::Primitive { entry, params } => {
-                self.leaf(entry.code, point, &centred(placement.offset, params))?
+                self.primitive(entry, placement.offset, params, point)?
             }
             _ => {
                 let placed = self.warp(code::OFFSET, point, &placement.offset)?;

@@ -101,4 +101,14 @@ impl<'a, R: Real> Args<'a, R> {
             |s, item, _next| step(s, item),
         )
     }
+
+    /// Goes through the trees of the list that the window begins with: see [`Real::walk`].
+    #[inline(always)]
+    pub fn walk<const W: usize, T: State<R::Base>>(
+        self,
+        init: T,
+        step: impl Fn(T, [R::Scalar; W]) -> (T, T, R::Mask),
+    ) -> T {
+        R::walk(self.store, self.at, init, step)
+    }
 }

@@ -460,4 +460,13 @@ where
     ) -> T {
         R::fold(store, at, ends, init, step)
     }
+    #[inline(always)]
+    fn walk<const W: usize, T: State<R::Base>>(
+        store: &R::Store,
+        at: usize,
+        init: T,
+        step: impl Fn(T, [R::Scalar; W]) -> (T, T, R::Mask),
+    ) -> T {
+        R::walk(store, at, init, step)
+    }
 }

@@ -412,6 +412,41 @@ impl<'r> Real for Expr<'r> {
         r.close(of);
         states
     }
+
+    fn walk<const W: usize, T: State<Self>>(
+        store: &&'r Recorder,
+        at: usize,
+        init: T,
+        step: impl Fn(T, [Self; W]) -> (T, T, Condition<'r>),
+    ) -> T {
+        let r = *store;
+        let of = r.open(Turns::Nodes {
+            at: at as u32,
+            width: W as u32,
+        });
+        let states = init.zip(init, |a: Self, _| Expr::value(r, r.state(of, a.id(r))));
+        let node = std::array::from_fn(|k| {
+            let (next, component) = (false, k as u32);
+            Expr::value(
+                r,
+                r.add(Op::Item {
+                    of,
+                    next,
+                    component,
+                }),
+            )
+        });
+        let (entered, passed, enters) = step(states, node);
+        if let Truth::Value(_, condition) = enters.0 {
+            r.enter_if(of, condition);
+        }
+        let next = entered.zip(passed, |entered, passed| {
+            Self::select(enters, entered, passed)
+        });
+        finish_loop(r, states, next);
+        r.close(of);
+        states
+    }
 }
 
 /// Length of one to four components.
@@ -429,7 +464,7 @@ fn length<'r>(r: &'r Recorder, v: &[Expr<'r>]) -> Expr<'r> {
 fn steps_of(turns: &Turns) -> u32 {
     match turns {
         Turns::Fixed(n) => *n,
-        Turns::Number(_) | Turns::Items { .. } => MOST_STEPS,
+        Turns::Number(_) | Turns::Items { .. } | Turns::Nodes { .. } => MOST_STEPS,
     }
 }
 

@@ -5,7 +5,7 @@
 //! zero, the logarithm of a negative number) the range says nothing about that point.
 
 use super::data::{Data, Grid};
-use super::list::fold_list;
+use super::list::{fold_list, walk_list};
 use super::real::{Ends, Masked, Ops, Real, State, interpolate, steps};
 use super::scalar::F64;
 use super::vector::{Vec3, v3};
@@ -651,6 +651,18 @@ impl<const SINGLE: bool> Real for IntervalOf<SINGLE> {
             init,
             |s, a: [f32; W], b: [f32; W]| step(s, a.map(Into::into), b.map(Into::into)),
         )
+    }
+
+    fn walk<const W: usize, T: State<Self>>(
+        store: &Data,
+        at: usize,
+        init: T,
+        step: impl Fn(T, [Self; W]) -> (T, T, Maybe),
+    ) -> T {
+        walk_list(&store.params, at, init, |s, node: [f32; W]| {
+            let (entered, passed, enters) = step(s, node.map(Into::into));
+            (entered, passed, enters.yes)
+        })
     }
 }
 

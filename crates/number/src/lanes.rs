@@ -5,7 +5,7 @@
 
 use super::data::Data;
 use super::elementary;
-use super::list::fold_list;
+use super::list::{fold_list, walk_list};
 use super::real::{Ends, Masked, Ops, Real, State, along_axis, between, steps};
 use super::vector::Vec3;
 use fearless_simd::{Simd, prelude::*};
@@ -268,5 +268,24 @@ impl<S: Simd> Real for Lanes<S> {
         step: impl Fn(T, [f32; W], [f32; W]) -> T,
     ) -> T {
         fold_list(&store.params, at, ends, init, step)
+    }
+
+    #[inline(always)]
+    fn walk<const W: usize, T: State<Self>>(
+        store: &Data,
+        at: usize,
+        init: T,
+        step: impl Fn(T, [f32; W]) -> (T, T, LaneMask<S>),
+    ) -> T {
+        walk_list(
+            &store.params,
+            at,
+            init,
+            #[inline(always)]
+            |s, node: [f32; W]| {
+                let (entered, passed, enters) = step(s, node);
+                (entered, passed, enters.0.any_true())
+            },
+        )
     }
 }

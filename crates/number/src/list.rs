@@ -33,3 +33,33 @@ pub(super) fn fold_list<T, const W: usize>(
     }
     s
 }
+
+/// For each node of the list of trees at `at` that is come to: what `step` says, see [`super::Real::walk`]; its third says whether the
+/// node's children are next. Counts that are wrong end the walk early, never late.
+#[inline(always)]
+pub(super) fn walk_list<T, const W: usize>(
+    store: &[f32],
+    at: usize,
+    init: T,
+    step: impl Fn(T, [f32; W]) -> (T, T, bool),
+) -> T {
+    let Some((count, numbers)) = store.get(at..).and_then(<[f32]>::split_first) else {
+        return init;
+    };
+    let (nodes, _) = numbers.as_chunks::<W>();
+    let n = nodes.len().min(steps((*count).into()) as usize);
+    let mut s = init;
+    let mut i = 0;
+    while i < n {
+        let node = nodes[i];
+        let (entered, passed, enters) = step(s, node);
+        if enters {
+            s = entered;
+            i += 1;
+        } else {
+            s = passed;
+            i += steps(node[W - 1].into()).max(1) as usize;
+        }
+    }
+    s
+}

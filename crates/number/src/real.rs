@@ -311,6 +311,17 @@ pub trait Real:
         step: impl Fn(T, [Self::Scalar; W], [Self::Scalar; W]) -> T,
     ) -> T;
 
+    /// The list at `at` is its count, then the nodes of trees, `W` numbers each: a node, its children's trees behind it. The last
+    /// number of a node says how many nodes its tree has, itself included. For each node from the first on, `step(s, node)` gives
+    /// what follows if its children are gone through, what follows if they are passed over, and whether they are gone
+    /// through. Lanes and ranges that do not agree go through them. At most [`MOST_STEPS`] nodes, as for [`Real::fold`].
+    fn walk<const W: usize, T: State<Self::Base>>(
+        store: &Self::Store,
+        at: usize,
+        init: T,
+        step: impl Fn(T, [Self::Scalar; W]) -> (T, T, Self::Mask),
+    ) -> T;
+
     /// self, but not outside [`lo`, `hi`]; `lo` and `hi` are numbers, parameters or literals.
     #[inline(always)]
     fn clamp<L, H>(self, lo: L, hi: H) -> Self

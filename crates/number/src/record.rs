@@ -173,6 +173,13 @@ pub enum Turns {
         /// Whether the last item is followed by the first. That pair comes first then.
         ends: Ends,
     },
+    /// Once for each node of a list of trees in the parameters that is come to: [`Loop::enters`] says whether a node's children are.
+    Nodes {
+        /// The parameter that holds the number of nodes, which follow it.
+        at: u32,
+        /// Numbers a node has. The last is the number of nodes in its tree.
+        width: u32,
+    },
 }
 
 /// Something that a loop carries.
@@ -193,6 +200,8 @@ pub struct Loop {
     pub turns: Turns,
     /// What it carries that is used: index and values. All go on together at the end of a turn.
     pub states: Vec<(u32, State)>,
+    /// Of [`Turns::Nodes`]: whether the children of the node come next. Without it they never do.
+    pub enters: Option<Id>,
     /// What happens in each turn.
     pub body: Vec<Statement>,
 }
@@ -308,6 +317,7 @@ struct LoopRecord {
     /// Each with the value that stands for it.
     states: Vec<(Id, State)>,
     condition: Option<Id>,
+    enters: Option<Id>,
 }
 
 /// A block of statements that is being recorded, and the values that were computed in it.
@@ -469,6 +479,7 @@ impl Recorder {
             turns,
             states: Vec::new(),
             condition: None,
+            enters: None,
         });
         record.blocks.push(Block::default());
         id
@@ -513,6 +524,11 @@ impl Recorder {
         }
     }
 
+    /// The children of the node that the loop `of` is at come next if the condition holds.
+    pub(super) fn enter_if(&self, of: LoopId, condition: Id) {
+        self.0.borrow_mut().loops[of.0 as usize].enters = Some(condition);
+    }
+
     /// Ends the body of the innermost loop, `of`.
     pub(super) fn close(&self, of: LoopId) {
         let mut record = self.0.borrow_mut();
@@ -551,6 +567,7 @@ impl Record {
                 let (_, state) = &record.states[*index as usize];
                 open.extend([state.init, state.next]);
                 open.extend(record.condition);
+                open.extend(record.enters);
                 if let Turns::Number(n) = record.turns {
                     open.push(n);
                 }
@@ -579,6 +596,7 @@ impl Record {
                             id: *id,
                             turns: record.turns.clone(),
                             states,
+                            enters: record.enters,
                             body: self.prune(body, used),
                         }));
                     }

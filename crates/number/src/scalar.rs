@@ -1,7 +1,7 @@
 //! One point at a time: `f32`, and `f64` as the reference.
 
 use super::data::Data;
-use super::list::fold_list;
+use super::list::{fold_list, walk_list};
 use super::real::{Ends, Masked, Ops, Real, State, steps};
 use super::vector::Vec3;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -224,6 +224,22 @@ macro_rules! real {
                     init,
                     #[inline(always)]
                     |s, a: [f32; W], b: [f32; W]| step(s, a.map(Into::into), b.map(Into::into)),
+                )
+            }
+
+            #[inline(always)]
+            fn walk<const W: usize, T: State<$t>>(
+                store: &Data,
+                at: usize,
+                init: T,
+                step: impl Fn(T, [$t; W]) -> (T, T, bool),
+            ) -> T {
+                walk_list(
+                    &store.params,
+                    at,
+                    init,
+                    #[inline(always)]
+                    |s, node: [f32; W]| step(s, node.map(Into::into)),
                 )
             }
         }

@@ -461,4 +461,12 @@ impl Real for Slope {
     ) -> T {
         Interval::fold(store, at, ends, init, step)
     }
+    fn walk<const W: usize, T: State<Interval>>(
+        store: &Data,
+        at: usize,
+        init: T,
+        step: impl Fn(T, [Interval; W]) -> (T, T, Maybe),
+    ) -> T {
+        Interval::walk(store, at, init, step)
+    }
 }

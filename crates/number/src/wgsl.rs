@@ -205,12 +205,22 @@ impl Printer<'_> {
                 // an open list has no pair that ends with its first item
                 (whole(&self.param(*at)), u32::from(*ends == Ends::Open))
             }
+            Turns::Nodes { at, .. } => (whole(&self.param(*at)), 0),
         };
         self.line(&format!("let n{id} = {count};"));
-        self.line(&format!(
-            "for (var i{id} = {first}u; i{id} < n{id}; i{id}++) {{"
-        ));
+        if let Turns::Nodes { .. } = &l.turns {
+            self.line(&format!("var i{id} = {first}u;"));
+            self.line(&format!("while (i{id} < n{id}) {{"));
+        } else {
+            self.line(&format!(
+                "for (var i{id} = {first}u; i{id} < n{id}; i{id}++) {{"
+            ));
+        }
         self.depth += 1;
+        if let Turns::Nodes { at, width } = &l.turns {
+            let nodes = format!("{}{}u", self.offset, at + 1);
+            self.line(&format!("let a{id} = {nodes} + i{id} * {width}u;"));
+        }
         if let Turns::Items { at, width, .. } = &l.turns {
             let items = format!("{}{}u", self.offset, at + 1);
             self.line(&format!(
@@ -224,6 +234,15 @@ impl Printer<'_> {
             if next != name {
                 self.line(&format!("{name} = {next};"));
             }
+        }
+        if let Turns::Nodes { width, .. } = &l.turns {
+            let last = width - 1;
+            let over = format!("u32(clamp({PARAMS}[a{id} + {last}u], 1.0f, {MOST_STEPS}.0f))");
+            let on = match l.enters {
+                Some(enters) => format!("select({over}, 1u, {})", self.name(enters)),
+                None => over,
+            };
+            self.line(&format!("i{id} += {on};"));
         }
         self.depth -= 1;
         self.line("}");

@@ -11,12 +11,14 @@ mod corner;
 mod line;
 mod outline;
 mod round;
+mod strip;
 
 pub use conic::*;
 pub use corner::*;
 pub use line::*;
 pub use outline::*;
 pub use round::*;
+pub use strip::{Strips, strips};
 
 /// The words of a 2D shape.
 const fn flat(

@@ -4,17 +4,17 @@ use super::*;
 
 /// What the edges passed so far say of a point.
 #[derive(Clone, Copy)]
-struct Seen<R> {
+pub(super) struct Seen<R> {
     /// Square of the distance to the nearest.
-    nearest: R,
+    pub(super) nearest: R,
     /// The distance to the line through it where the square is zero: only its gradient is ever used.
-    touch: R,
+    pub(super) touch: R,
 }
 
 impl<R: Real> Seen<R> {
     /// Nothing yet.
     #[inline(always)]
-    fn nothing(x: R) -> Self {
+    pub(super) fn nothing(x: R) -> Self {
         Seen {
             nearest: x.lit(1e30),
             touch: x,
@@ -27,7 +27,7 @@ impl<R: Real> Seen<R> {
     /// A point at the height of a vertex counts as above it, so that the two edges that meet there agree, and so does a point
     /// on a level edge.
     #[inline(always)]
-    fn pass(
+    pub(super) fn pass(
         self,
         p: Vec2<R>,
         from: Vec2<R::Scalar>,
@@ -47,7 +47,7 @@ impl<R: Real> Seen<R> {
 
     /// Distance to the nearest edge.
     #[inline(always)]
-    fn distance(self) -> R {
+    pub(super) fn distance(self) -> R {
         R::select(self.nearest.above(0.0), self.nearest.sqrt(), self.touch)
     }
 }

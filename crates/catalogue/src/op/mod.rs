@@ -179,6 +179,7 @@ macro_rules! with_own_leaves {
             $crate::op::arithmetic::NoiseAt<$crate::noise::ValueNoise>,
             $crate::op::arithmetic::NoiseAt<$crate::noise::GradientNoise>,
             $crate::op::arithmetic::NoiseAt<$crate::noise::CellularNoise>,
+            $crate::flat::Strips,
         }
     };
 }
@@ -319,6 +320,9 @@ pub mod code {
 
     /// See [`arithmetic::Replaced`](super::arithmetic::Replaced).
     pub const REPLACED: u16 = MODIFIERS + 4 + Unary::ALL.len() as u16;
+
+    /// See [`Strips`](crate::flat::Strips).
+    pub const STRIPS: u16 = PRIMITIVES + 5 + NoiseKind::ALL.len() as u16;
 
     /// Code of a noise.
     pub const fn noise(kind: NoiseKind) -> u16 {

@@ -5,11 +5,9 @@ use super::mistake::{Run, mistake};
 use super::native::{Call, Native, slot};
 use super::value::Value;
 use crate::report::Report;
-use std::collections::HashMap;
-use zeroset_catalogue::entries::{Catalogue, catalogue};
+use zeroset_catalogue::entries::catalogue;
 use zeroset_catalogue::{LARGE, SMALL};
 use zeroset_field::field::Field;
-use zeroset_field::placement::Placement;
 use zeroset_field::text::{Align, Font, Layout, default_font};
 
 /// The functions.
@@ -93,33 +91,24 @@ fn text(c: &mut Call<'_, '_>) -> Run<Value> {
     let outline = catalogue()
         .primitive("outline")
         .ok_or_else(|| mistake("letters have no outlines here"))?;
-    // letters alike are one shape in several places
-    let mut shapes: HashMap<usize, Field> = HashMap::new();
-    let mut letters = Vec::with_capacity(set.glyphs.len());
+    // one outline for all: its trees are shorter than a union of letters
+    let mut pieces: Vec<f64> = Vec::new();
     for glyph in &set.glyphs {
-        let key = glyph.outline.as_ptr() as usize;
-        let shape = match shapes.get(&key) {
-            Some(shape) => shape.clone(),
-            None => {
-                c.machine.grow_field(glyph.outline.len())?;
-                let shape = Field::primitive(outline, glyph.outline.to_vec())
-                    .map_err(|e| fields::unfit(&e))?;
-                shapes.insert(key, shape.clone());
-                shape
-            }
-        };
-        c.machine.grow_field(0)?;
         let [x, y] = glyph.position;
-        letters.push(
-            shape
-                .place(Placement::moved([x, y, 0.0]))
-                .map_err(|e| fields::unfit(&e))?,
-        );
+        for [ax, ay, bx, by] in glyph.outline[1..].as_chunks::<4>().0 {
+            // as the evaluators will read them, so that contours stay closed
+            let stored = [ax + x, ay + y, bx + x, by + y].map(|c| f64::from(c as f32));
+            if stored[..2] != stored[2..] {
+                pieces.extend(stored);
+            }
+        }
     }
-    if letters.is_empty() {
+    if pieces.is_empty() {
         return Err(mistake("the text has no letters to see").at(given.place));
     }
-    let plane = Field::join(Catalogue::union(), Vec::new(), letters);
+    c.machine.grow_field(pieces.len())?;
+    let params = [&[(pieces.len() / 4) as f64], &pieces[..]].concat();
+    let plane = Field::primitive(outline, params);
     match catalogue().modifier("extrude") {
         Some(extrude) if depth > 0.0 => {
             let plane = plane.map_err(|e| fields::unfit(&e))?;

@@ -7,6 +7,7 @@ use crate::texture::{self, SIDE, starts};
 use std::collections::HashSet;
 use std::sync::Arc;
 use zeroset_catalogue::entries::catalogue;
+use zeroset_catalogue::flat::strips;
 use zeroset_catalogue::op::code;
 use zeroset_catalogue::tape::{Code, Instruction, Tape};
 use zeroset_number::{Data, Grid, Vec3, v3, wgsl};
@@ -77,6 +78,7 @@ fn parameters(operation: Operation) -> Vec<Vec<f32>> {
     let all = catalogue();
     let (centre, info, samples) = match operation {
         Operation::Leaf(code::SAMPLED) => return sampled_parameters(),
+        Operation::Leaf(code::STRIPS) => return strip_parameters(),
         Operation::Leaf(code) => match all.primitives.get(usize::from(code)) {
             Some(e) => (vec![0.25, -0.125, 0.0625], &e.info, e.samples),
             None => return own_parameters(),
@@ -114,6 +116,37 @@ fn parameters(operation: Operation) -> Vec<Vec<f32>> {
 fn own_parameters() -> Vec<Vec<f32>> {
     let mut noise = Noise(7);
     vec![(0..32).map(|_| 0.2 + noise.next().abs()).collect()]
+}
+
+/// Contours of many pieces: two rings that cross, one in the other by windings and by crossings.
+fn strip_parameters() -> Vec<Vec<f32>> {
+    let ring = |corners: u32, size: f64, x: f64| -> Vec<[f64; 2]> {
+        let turn = |i: u32| std::f64::consts::TAU * f64::from(i) / f64::from(corners);
+        let reach = |i: u32| size * (1.0 + 0.3 * f64::from(i % 3));
+        let corner = |i: u32| [x + reach(i) * turn(i).cos(), reach(i) * turn(i).sin()];
+        (0..corners).map(corner).collect()
+    };
+    let pieces = |points: Vec<[f64; 2]>| -> Vec<f64> {
+        let next = points.iter().cycle().skip(1);
+        let each = points.iter().zip(next);
+        each.flat_map(|(a, b)| [a[0], a[1], b[0], b[1]]).collect()
+    };
+    let outline = [pieces(ring(17, 0.6, 0.2)), pieces(ring(23, 0.3, -0.4))].concat();
+    let outline = [&[40.0], &outline[..]].concat();
+    let star: Vec<[f64; 2]> = ring(31, 0.7, 0.0)
+        .into_iter()
+        .cycle()
+        .step_by(7)
+        .take(31)
+        .collect();
+    let star = [&[31.0], star.as_flattened()].concat();
+    [("outline", outline), ("polygon", star)]
+        .map(|(name, list)| {
+            let trees = strips(name, &list).expect("many pieces");
+            let front = [9.0; AT].into_iter().chain([0.25, -0.125, 0.0]);
+            front.chain(trees.iter().map(|x| *x as f32)).collect()
+        })
+        .to_vec()
 }
 
 /// Grids that a field of samples may be of: the texels of the second begin within a row and go on in the next one.
