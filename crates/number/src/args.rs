@@ -104,11 +104,12 @@ impl<'a, R: Real> Args<'a, R> {
 
     /// Goes through the trees of the list that the window begins with: see [`Real::walk`].
     #[inline(always)]
-    pub fn walk<const W: usize, T: State<R::Base>>(
+    pub fn walk<const W: usize, const V: usize, T: State<R::Base>>(
         self,
         init: T,
-        step: impl Fn(T, [R::Scalar; W]) -> (T, T, R::Mask),
+        look: impl Fn(T, [R::Scalar; W]) -> (T, T, R::Mask),
+        take: impl Fn(T, [R::Scalar; V]) -> T,
     ) -> T {
-        R::walk(self.store, self.at, init, step)
+        R::walk(self.store, self.at, init, look, take)
     }
 }

@@ -461,12 +461,13 @@ where
         R::fold(store, at, ends, init, step)
     }
     #[inline(always)]
-    fn walk<const W: usize, T: State<R::Base>>(
+    fn walk<const W: usize, const V: usize, T: State<R::Base>>(
         store: &R::Store,
         at: usize,
         init: T,
-        step: impl Fn(T, [R::Scalar; W]) -> (T, T, R::Mask),
+        look: impl Fn(T, [R::Scalar; W]) -> (T, T, R::Mask),
+        take: impl Fn(T, [R::Scalar; V]) -> T,
     ) -> T {
-        R::walk(store, at, init, step)
+        R::walk(store, at, init, look, take)
     }
 }

@@ -1,7 +1,7 @@
 //! The number type whose operations are recorded.
 
 use super::real::{Ends, MOST_STEPS, Masked, Ops, Real, State, steps};
-use super::record::{Binary, Comparison, Id, Logic, Op, Recorder, Turns, Unary};
+use super::record::{Binary, Comparison, Id, Logic, LoopId, Op, Recorder, Turns, Unary};
 use super::vector::Vec3;
 use std::cell::Cell;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
@@ -413,37 +413,56 @@ impl<'r> Real for Expr<'r> {
         states
     }
 
-    fn walk<const W: usize, T: State<Self>>(
+    fn walk<const W: usize, const V: usize, T: State<Self>>(
         store: &&'r Recorder,
         at: usize,
         init: T,
-        step: impl Fn(T, [Self; W]) -> (T, T, Condition<'r>),
+        look: impl Fn(T, [Self; W]) -> (T, T, Condition<'r>),
+        take: impl Fn(T, [Self; V]) -> T,
     ) -> T {
+        fn numbers<const W: usize>(r: &Recorder, of: LoopId) -> [Expr<'_>; W] {
+            std::array::from_fn(|k| {
+                let (next, component) = (false, k as u32);
+                Expr::value(
+                    r,
+                    r.add(Op::Item {
+                        of,
+                        next,
+                        component,
+                    }),
+                )
+            })
+        }
+        let carried = |of: LoopId, init: T| {
+            init.zip(init, |a: Self, _| {
+                Expr::value(*store, store.state(of, a.id(store)))
+            })
+        };
         let r = *store;
-        let of = r.open(Turns::Nodes {
-            at: at as u32,
-            width: W as u32,
-        });
-        let states = init.zip(init, |a: Self, _| Expr::value(r, r.state(of, a.id(r))));
-        let node = std::array::from_fn(|k| {
-            let (next, component) = (false, k as u32);
-            Expr::value(
-                r,
-                r.add(Op::Item {
-                    of,
-                    next,
-                    component,
-                }),
-            )
-        });
-        let (entered, passed, enters) = step(states, node);
+        let (at, width) = (at as u32, W as u32);
+        let of = r.open(Turns::Nodes { at, width });
+        let states = carried(of, init);
+        let node = numbers(r, of);
+        let (entered, passed, enters) = look(states, node);
         if let Truth::Value(_, condition) = enters.0 {
             r.enter_if(of, condition);
         }
-        let next = entered.zip(passed, |entered, passed| {
+        let before = entered.zip(passed, |entered, passed| {
             Self::select(enters, entered, passed)
         });
-        finish_loop(r, states, next);
+        let none = Expr::literal(0.0, Some(r));
+        let slice = Turns::Slice {
+            at,
+            nodes: width,
+            width: V as u32,
+            first: node[W - 3].id(r),
+            count: Self::select(enters, node[W - 2], none).id(r),
+        };
+        let inner = r.open(slice);
+        let taken = carried(inner, before);
+        finish_loop(r, taken, take(taken, numbers(r, inner)));
+        r.close(inner);
+        finish_loop(r, states, taken);
         r.close(of);
         states
     }
@@ -464,7 +483,7 @@ fn length<'r>(r: &'r Recorder, v: &[Expr<'r>]) -> Expr<'r> {
 fn steps_of(turns: &Turns) -> u32 {
     match turns {
         Turns::Fixed(n) => *n,
-        Turns::Number(_) | Turns::Items { .. } | Turns::Nodes { .. } => MOST_STEPS,
+        _ => MOST_STEPS,
     }
 }
 

@@ -653,16 +653,23 @@ impl<const SINGLE: bool> Real for IntervalOf<SINGLE> {
         )
     }
 
-    fn walk<const W: usize, T: State<Self>>(
+    fn walk<const W: usize, const V: usize, T: State<Self>>(
         store: &Data,
         at: usize,
         init: T,
-        step: impl Fn(T, [Self; W]) -> (T, T, Maybe),
+        look: impl Fn(T, [Self; W]) -> (T, T, Maybe),
+        take: impl Fn(T, [Self; V]) -> T,
     ) -> T {
-        walk_list(&store.params, at, init, |s, node: [f32; W]| {
-            let (entered, passed, enters) = step(s, node.map(Into::into));
-            (entered, passed, enters.yes)
-        })
+        walk_list(
+            &store.params,
+            at,
+            init,
+            |s, node: [f32; W]| {
+                let (entered, passed, enters) = look(s, node.map(Into::into));
+                (entered, passed, enters.yes)
+            },
+            |s, item: [f32; V]| take(s, item.map(Into::into)),
+        )
     }
 }
 

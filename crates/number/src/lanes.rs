@@ -271,11 +271,12 @@ impl<S: Simd> Real for Lanes<S> {
     }
 
     #[inline(always)]
-    fn walk<const W: usize, T: State<Self>>(
+    fn walk<const W: usize, const V: usize, T: State<Self>>(
         store: &Data,
         at: usize,
         init: T,
-        step: impl Fn(T, [f32; W]) -> (T, T, LaneMask<S>),
+        look: impl Fn(T, [f32; W]) -> (T, T, LaneMask<S>),
+        take: impl Fn(T, [f32; V]) -> T,
     ) -> T {
         walk_list(
             &store.params,
@@ -283,9 +284,10 @@ impl<S: Simd> Real for Lanes<S> {
             init,
             #[inline(always)]
             |s, node: [f32; W]| {
-                let (entered, passed, enters) = step(s, node);
+                let (entered, passed, enters) = look(s, node);
                 (entered, passed, enters.0.any_true())
             },
+            take,
         )
     }
 }

@@ -34,31 +34,39 @@ pub(super) fn fold_list<T, const W: usize>(
     s
 }
 
-/// For each node of the list of trees at `at` that is come to: what `step` says, see [`super::Real::walk`]; its third says whether the
-/// node's children are next. Counts that are wrong end the walk early, never late.
+/// Goes through the trees of the list at `at`: see [`super::Real::walk`]. Numbers that are wrong end the walk early, never late.
 #[inline(always)]
-pub(super) fn walk_list<T, const W: usize>(
+pub(super) fn walk_list<T, const W: usize, const V: usize>(
     store: &[f32],
     at: usize,
     init: T,
-    step: impl Fn(T, [f32; W]) -> (T, T, bool),
+    look: impl Fn(T, [f32; W]) -> (T, T, bool),
+    take: impl Fn(T, [f32; V]) -> T,
 ) -> T {
     let Some((count, numbers)) = store.get(at..).and_then(<[f32]>::split_first) else {
         return init;
     };
-    let (nodes, _) = numbers.as_chunks::<W>();
-    let n = nodes.len().min(steps((*count).into()) as usize);
+    let n = (numbers.len() / W).min(steps((*count).into()) as usize);
+    let (nodes, items) = numbers.split_at(n * W);
+    let (nodes, items) = (nodes.as_chunks::<W>().0, items.as_chunks::<V>().0);
     let mut s = init;
     let mut i = 0;
     while i < n {
         let node = nodes[i];
-        let (entered, passed, enters) = step(s, node);
+        let [first, count, tree] = [W - 3, W - 2, W - 1].map(
+            #[inline(always)]
+            |k| steps(node[k].into()) as usize,
+        );
+        let (entered, passed, enters) = look(s, node);
         if enters {
             s = entered;
+            for item in items.iter().skip(first).take(count) {
+                s = take(s, *item);
+            }
             i += 1;
         } else {
             s = passed;
-            i += steps(node[W - 1].into()).max(1) as usize;
+            i += tree.max(1);
         }
     }
     s

@@ -311,15 +311,19 @@ pub trait Real:
         step: impl Fn(T, [Self::Scalar; W], [Self::Scalar; W]) -> T,
     ) -> T;
 
-    /// The list at `at` is its count, then the nodes of trees, `W` numbers each: a node, its children's trees behind it. The last
-    /// number of a node says how many nodes its tree has, itself included. For each node from the first on, `step(s, node)` gives
-    /// what follows if its children are gone through, what follows if they are passed over, and whether they are gone
-    /// through. Lanes and ranges that do not agree go through them. At most [`MOST_STEPS`] nodes, as for [`Real::fold`].
-    fn walk<const W: usize, T: State<Self::Base>>(
+    /// The list at `at` is a count, so many nodes of trees of `W` numbers each, then items of `V` numbers. A node's children and
+    /// their children stand behind it. Its last three numbers are the first of its own items, how many it has, and the nodes of its
+    /// tree, itself included.
+    ///
+    /// For each node from the first on, `look(s, node)` gives what follows if it is entered, what follows if its tree is passed
+    /// over, and whether it is entered: then comes `s = take(s, item)` for its items, and its first child. Lanes and ranges that do
+    /// not agree enter. At most [`MOST_STEPS`] nodes, as for [`Real::fold`].
+    fn walk<const W: usize, const V: usize, T: State<Self::Base>>(
         store: &Self::Store,
         at: usize,
         init: T,
-        step: impl Fn(T, [Self::Scalar; W]) -> (T, T, Self::Mask),
+        look: impl Fn(T, [Self::Scalar; W]) -> (T, T, Self::Mask),
+        take: impl Fn(T, [Self::Scalar; V]) -> T,
     ) -> T;
 
     /// self, but not outside [`lo`, `hi`]; `lo` and `hi` are numbers, parameters or literals.

@@ -180,6 +180,19 @@ pub enum Turns {
         /// Numbers a node has. The last is the number of nodes in its tree.
         width: u32,
     },
+    /// Once for each of some items that stand behind such nodes.
+    Slice {
+        /// The parameter that holds the number of nodes.
+        at: u32,
+        /// Numbers a node has.
+        nodes: u32,
+        /// Numbers an item has.
+        width: u32,
+        /// Which item is the first.
+        first: Id,
+        /// How many there are.
+        count: Id,
+    },
 }
 
 /// Something that a loop carries.
@@ -568,8 +581,10 @@ impl Record {
                 open.extend([state.init, state.next]);
                 open.extend(record.condition);
                 open.extend(record.enters);
-                if let Turns::Number(n) = record.turns {
-                    open.push(n);
+                match record.turns {
+                    Turns::Number(n) => open.push(n),
+                    Turns::Slice { first, count, .. } => open.extend([first, count]),
+                    Turns::Fixed(_) | Turns::Items { .. } | Turns::Nodes { .. } => {}
                 }
             }
         }

@@ -228,18 +228,21 @@ macro_rules! real {
             }
 
             #[inline(always)]
-            fn walk<const W: usize, T: State<$t>>(
+            fn walk<const W: usize, const V: usize, T: State<$t>>(
                 store: &Data,
                 at: usize,
                 init: T,
-                step: impl Fn(T, [$t; W]) -> (T, T, bool),
+                look: impl Fn(T, [$t; W]) -> (T, T, bool),
+                take: impl Fn(T, [$t; V]) -> T,
             ) -> T {
                 walk_list(
                     &store.params,
                     at,
                     init,
                     #[inline(always)]
-                    |s, node: [f32; W]| step(s, node.map(Into::into)),
+                    |s, node: [f32; W]| look(s, node.map(Into::into)),
+                    #[inline(always)]
+                    |s, item: [f32; V]| take(s, item.map(Into::into)),
                 )
             }
         }

@@ -461,12 +461,13 @@ impl Real for Slope {
     ) -> T {
         Interval::fold(store, at, ends, init, step)
     }
-    fn walk<const W: usize, T: State<Interval>>(
+    fn walk<const W: usize, const V: usize, T: State<Interval>>(
         store: &Data,
         at: usize,
         init: T,
-        step: impl Fn(T, [Interval; W]) -> (T, T, Maybe),
+        look: impl Fn(T, [Interval; W]) -> (T, T, Maybe),
+        take: impl Fn(T, [Interval; V]) -> T,
     ) -> T {
-        Interval::walk(store, at, init, step)
+        Interval::walk(store, at, init, look, take)
     }
 }

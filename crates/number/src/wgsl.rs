@@ -206,6 +206,7 @@ impl Printer<'_> {
                 (whole(&self.param(*at)), u32::from(*ends == Ends::Open))
             }
             Turns::Nodes { at, .. } => (whole(&self.param(*at)), 0),
+            Turns::Slice { count, .. } => (whole(&self.name(*count)), 0),
         };
         self.line(&format!("let n{id} = {count};"));
         if let Turns::Nodes { .. } = &l.turns {
@@ -220,6 +221,21 @@ impl Printer<'_> {
         if let Turns::Nodes { at, width } = &l.turns {
             let nodes = format!("{}{}u", self.offset, at + 1);
             self.line(&format!("let a{id} = {nodes} + i{id} * {width}u;"));
+        }
+        if let Turns::Slice {
+            at,
+            nodes,
+            width,
+            first,
+            ..
+        } = &l.turns
+        {
+            let (begin, count) = (at + 1, whole(&self.param(*at)));
+            let items = format!("{}{begin}u + {count} * {nodes}u", self.offset);
+            let first = whole(&self.name(*first));
+            self.line(&format!(
+                "let a{id} = {items} + ({first} + i{id}) * {width}u;"
+            ));
         }
         if let Turns::Items { at, width, .. } = &l.turns {
             let items = format!("{}{}u", self.offset, at + 1);

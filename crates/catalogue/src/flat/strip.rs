@@ -8,15 +8,18 @@ use std::collections::HashMap;
 
 /// The region within closed contours, as [`Outline`] and [`Polygon`] say it, from trees of strips (Ballard, "Strip trees: a
 /// hierarchical representation for curves", 1981). Parameters: a centre, 0 for the winding number or 1 for the number of
-/// crossings, then the list that [`strips`] makes.
+/// crossings, then what [`strips`] makes.
 ///
 /// A node is a segment, and how far from it a part of the contours goes at most. That part begins and ends where the segment
 /// does, so a point that is farther from the segment than that has the part on the side on which it has the segment: what is
 /// passed over still counts for the sign, to the same whole number. Distances are the same to the bit.
 pub struct Strips;
 
-/// Numbers a node has: start, end, how far from there its part goes, nodes in its tree. A piece itself goes no way.
-const NODE: usize = 6;
+/// Numbers a node has: start, direction, half the length, height of the end, how far its part goes, its first piece, how many,
+/// nodes in its tree.
+const NODE: usize = 10;
+/// Numbers a piece has: start and end.
+const PIECE: usize = 4;
 
 impl Leaf for Strips {
     #[inline(always)]
@@ -28,40 +31,41 @@ impl Leaf for Strips {
             |p| {
                 let p = p.xy();
                 let trees = a.list(4);
-                // the nearest contour is no farther than this: a first look at the roots alone
+                // the nearest piece is no farther than this: a first look at the roots alone
                 let within = trees.walk(
                     p.x.lit(1e30),
                     #[inline(always)]
                     |within, node: [_; NODE]| {
-                        let on = Self::node(p, node);
-                        let within = within.min(on.distance + node[4]);
+                        let within = within.min(On::node(p, node).distance + node[6]);
                         (within, within, within.below(-1.0))
                     },
+                    #[inline(always)]
+                    |within, _: [_; PIECE]| within,
                 );
                 let none = Seen::nothing(p.x);
                 let (nearest, touch, winding, _) = trees.walk(
                     (none.nearest, none.touch, p.x.lit(0.0), within),
                     #[inline(always)]
                     |(nearest, touch, winding, within), node: [_; NODE]| {
-                        let on = Self::node(p, node);
-                        let piece = node[4].below(1e-30);
-                        let zero = node[4].lit(0.0);
-                        let squared = on.squared + R::Scalar::select(piece, zero, zero.lit(1e30));
-                        let touch = R::choose(squared.below(nearest), on.touch, touch);
-                        let nearest = squared.min(nearest);
-                        let within = within.min(on.distance + node[4]);
+                        let on = On::node(p, node);
+                        let within = within.min(on.distance + node[6]).min(nearest.sqrt());
                         // for the roundings of both
-                        let far = within * (1.0 + 4e-6) + node[4];
-                        let enters = on
-                            .distance
-                            .below(far + R::Scalar::select(piece, zero.lit(-2e30), zero));
+                        let far = within * (1.0 + 4e-6) + node[6];
                         let crossed = R::choose(on.up, winding + 1.0, winding);
                         let crossed = R::choose(on.down, crossed - 1.0, crossed);
                         (
                             (nearest, touch, winding, within),
                             (nearest, touch, crossed, within),
-                            enters,
+                            on.distance.below(far),
                         )
+                    },
+                    #[inline(always)]
+                    |(nearest, touch, winding, within), s: [_; PIECE]| {
+                        let (from, to) = (v2(s[0], s[1]), v2(s[2], s[3]));
+                        let (seen, up, down) = Seen { nearest, touch }.pass(p, from, to);
+                        let winding = R::choose(up, winding + 1.0, winding);
+                        let winding = R::choose(down, winding - 1.0, winding);
+                        (seen.nearest, seen.touch, winding, within)
                     },
                 );
                 let d = Seen { nearest, touch }.distance();
@@ -76,30 +80,33 @@ impl Leaf for Strips {
 /// A point against the segment of a node.
 struct On<R: Real> {
     distance: R,
-    squared: R,
-    touch: R,
+    /// Whether the segment passes its height going up with the point to its left.
     up: R::Mask,
+    /// Whether it does so going down with the point to its right.
     down: R::Mask,
 }
 
-impl Strips {
+impl<R: Real> On<R> {
     #[inline(always)]
-    fn node<R: Real>(p: Vec2<R>, node: [R::Scalar; NODE]) -> On<R> {
-        let (from, to) = (v2(node[0], node[1]), v2(node[2], node[3]));
-        let (seen, up, down) = Seen::nothing(p.x).pass(p, from, to);
+    fn node(p: Vec2<R>, node: [R::Scalar; NODE]) -> Self {
+        let w = p - v2(node[0], node[1]);
+        let along = v2(node[2], node[3]);
+        let right = w.cross(along);
+        let beyond = ((w.dot(along) - node[4]).abs() - node[4]).max(0.0);
+        let (left, start, end) = (right.negative(), p.y.below(node[1]), p.y.below(node[5]));
         On {
-            distance: seen.nearest.sqrt(),
-            squared: seen.nearest,
-            touch: seen.touch,
-            up,
-            down,
+            distance: (beyond.sq() + right.sq()).sqrt(),
+            up: !start & end & left,
+            down: start & !end & !left,
         }
     }
 }
 
 /// Pieces from which on trees are worth it.
-const WORTH: usize = 12;
-/// Children of a node.
+const WORTH: usize = 24;
+/// Most pieces that a node has itself.
+const PIECES: usize = 8;
+/// Most children of a node.
 const CHILDREN: usize = 4;
 
 /// The parameters of [`Strips`] behind its centre, for what `outline` or `polygon` draw with these parameters; nothing if they are
@@ -124,10 +131,10 @@ pub fn strips(name: &str, params: &[f64]) -> Option<Vec<f64>> {
     }
     let contours = contours(&pieces)?;
     let mut list: Vec<&[[f64; 2]]> = contours.iter().map(Vec::as_slice).collect();
-    let mut trees = Vec::new();
-    forest(&mut list, &mut trees);
-    let count = (trees.len() / NODE) as f64;
-    Some([&[rule, count], &trees[..]].concat())
+    let mut trees = Trees::default();
+    trees.forest(&mut list);
+    let count = (trees.nodes.len() / NODE) as f64;
+    Some([&[rule, count], &trees.nodes[..], &trees.pieces].concat())
 }
 
 /// Closed lines through points, the first of which is also the last, made of all pieces.
@@ -163,38 +170,115 @@ fn contours(pieces: &[[f64; 4]]) -> Option<Vec<Vec<[f64; 2]>>> {
     Some(out)
 }
 
-/// The trees of contours, by place: few beside each other, more in discs.
-fn forest(contours: &mut [&[[f64; 2]]], out: &mut Vec<f64>) {
-    if contours.len() <= CHILDREN {
-        for contour in contours {
-            disc(&[contour], out, |out| parts(contour, out));
+/// Trees as they are written down.
+#[derive(Default)]
+struct Trees {
+    nodes: Vec<f64>,
+    pieces: Vec<f64>,
+}
+
+impl Trees {
+    /// Contours by place: few beside each other, more in discs.
+    fn forest(&mut self, contours: &mut [&[[f64; 2]]]) {
+        if contours.len() <= CHILDREN {
+            for contour in contours {
+                self.contour(contour);
+            }
+            return;
         }
-        return;
-    }
-    let half = halve(contours);
-    let (before, behind) = contours.split_at_mut(half);
-    for side in [before, behind] {
-        let quarter = halve(side);
-        let (before, behind) = side.split_at_mut(quarter);
-        for group in [before, behind] {
-            match group {
-                [] => {}
-                [contour] => disc(&[contour], out, |out| parts(contour, out)),
-                group => disc(&group.to_vec(), out, |out| forest(group, out)),
+        let half = halve(contours);
+        let (before, behind) = contours.split_at_mut(half);
+        for side in [before, behind] {
+            let quarter = halve(side);
+            let (before, behind) = side.split_at_mut(quarter);
+            for group in [before, behind] {
+                match group {
+                    [] => {}
+                    [contour] => self.contour(contour),
+                    group => {
+                        let points: Vec<[f64; 2]> =
+                            group.iter().copied().flatten().copied().collect();
+                        let centre = middle(&points);
+                        self.node(centre, centre, &points, |trees| trees.forest(group));
+                    }
+                }
             }
         }
     }
+
+    /// A closed line: in a disc, which has no sides.
+    fn contour(&mut self, points: &[[f64; 2]]) {
+        let centre = middle(points);
+        self.node(centre, centre, points, |trees| trees.parts(points));
+    }
+
+    /// What a node of a line holds: the pieces of a short one, the parts of a long one.
+    fn parts(&mut self, points: &[[f64; 2]]) {
+        let pieces = points.len() - 1;
+        if pieces <= PIECES {
+            for ends in points.windows(2) {
+                self.pieces.extend([ends[0], ends[1]].as_flattened());
+            }
+            return;
+        }
+        let count = pieces.div_ceil(PIECES).min(CHILDREN);
+        for part in 0..count {
+            let line = &points[part * pieces / count..=(part + 1) * pieces / count];
+            let (a, b) = (line[0], line[line.len() - 1]);
+            self.node(a, b, line, |trees| trees.parts(line));
+        }
+    }
+
+    /// A node from `a` to `b` around points, and what it holds.
+    fn node(
+        &mut self,
+        a: [f64; 2],
+        b: [f64; 2],
+        points: &[[f64; 2]],
+        fill: impl FnOnce(&mut Self),
+    ) {
+        let (mut far, mut large) = (0.0f64, 0.0f64);
+        for p in points {
+            far = far.max(beside(*p, a, b));
+            large = large.max(p[0].abs()).max(p[1].abs());
+        }
+        // for the roundings of places and of distances to them
+        let far = far * (1.0 + 4e-6) + 4e-6 * large;
+        let e = [b[0] - a[0], b[1] - a[1]];
+        let length = e[0].hypot(e[1]);
+        let along = if length > 0.0 {
+            [e[0] / length, e[1] / length]
+        } else {
+            [1.0, 0.0]
+        };
+        let (at, first) = (self.nodes.len(), self.pieces.len() / PIECE);
+        let segment = [a[0], a[1], along[0], along[1], length / 2.0, b[1], far];
+        self.nodes.extend(segment);
+        self.nodes.extend([first as f64, 0.0, 0.0]);
+        fill(self);
+        let tree = (self.nodes.len() - at) / NODE;
+        // a node with children has no pieces of its own
+        let own = if tree == 1 {
+            self.pieces.len() / PIECE - first
+        } else {
+            0
+        };
+        self.nodes[at + NODE - 2] = own as f64;
+        self.nodes[at + NODE - 1] = tree as f64;
+    }
+}
+
+/// The middle of the box of points.
+fn middle(points: &[[f64; 2]]) -> [f64; 2] {
+    let [lo, hi] = hull(points);
+    [0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1])]
 }
 
 /// Sorts contours along the longer side of what they fill; half of their number.
 fn halve(contours: &mut [&[[f64; 2]]]) -> usize {
     let all = hull(contours.iter().copied().flatten());
     let k = usize::from(all[1][1] - all[0][1] > all[1][0] - all[0][0]);
-    let middle = |c: &[[f64; 2]]| {
-        let b = hull(c);
-        b[0][k] + b[1][k]
-    };
-    contours.sort_by(|a, b| middle(a).total_cmp(&middle(b)));
+    contours.sort_by(|a, b| middle(a)[k].total_cmp(&middle(b)[k]));
     contours.len() / 2
 }
 
@@ -207,50 +291,6 @@ fn hull<'a>(points: impl IntoIterator<Item = &'a [f64; 2]>) -> [[f64; 2]; 2] {
             [hi[0].max(p[0]), hi[1].max(p[1])],
         ]
     })
-}
-
-/// A node around contours that has no sides.
-fn disc(contours: &[&[[f64; 2]]], out: &mut Vec<f64>, children: impl FnOnce(&mut Vec<f64>)) {
-    let all = || contours.iter().copied().flatten();
-    let [lo, hi] = hull(all());
-    let centre = [0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1])];
-    node(centre, centre, all(), out, children);
-}
-
-/// The trees of the parts of a line through points.
-fn parts(points: &[[f64; 2]], out: &mut Vec<f64>) {
-    let pieces = points.len() - 1;
-    let count = pieces.min(CHILDREN);
-    for part in 0..count {
-        let (from, to) = (part * pieces / count, (part + 1) * pieces / count);
-        match &points[from..=to] {
-            [a, b] => out.extend([a[0], a[1], b[0], b[1], 0.0, 1.0]),
-            line => node(line[0], line[line.len() - 1], line, out, |out| {
-                parts(line, out)
-            }),
-        }
-    }
-}
-
-/// Writes a node and its children.
-fn node<'a>(
-    a: [f64; 2],
-    b: [f64; 2],
-    points: impl IntoIterator<Item = &'a [f64; 2]>,
-    out: &mut Vec<f64>,
-    children: impl FnOnce(&mut Vec<f64>),
-) {
-    let (mut far, mut large) = (0.0f64, 0.0f64);
-    for p in points {
-        far = far.max(beside(*p, a, b));
-        large = large.max(p[0].abs()).max(p[1].abs());
-    }
-    // for the roundings of places and of distances to them, and so that a node is never taken for a piece
-    let far = far * (1.0 + 4e-6) + 4e-6 * large + 1e-20;
-    let at = out.len();
-    out.extend([a[0], a[1], b[0], b[1], far, 0.0]);
-    children(out);
-    out[at + NODE - 1] = ((out.len() - at) / NODE) as f64;
 }
 
 /// Distance of a point to a segment.
@@ -386,13 +426,13 @@ mod tests {
     #[test]
     fn polygons_count_crossings() {
         // a star that crosses itself: its middle is outside by crossings, inside by winding
-        let points: Vec<[f64; 2]> = (0..15)
+        let points: Vec<[f64; 2]> = (0..25)
             .map(|i| {
-                let turn = std::f64::consts::TAU * f64::from(i * 7 % 15) / 15.0;
+                let turn = std::f64::consts::TAU * f64::from(i * 11 % 25) / 25.0;
                 [turn.cos(), turn.sin()].map(|c| f64::from(c as f32))
             })
             .collect();
-        let list: Vec<f64> = [15.0]
+        let list: Vec<f64> = [25.0]
             .into_iter()
             .chain(points.into_iter().flatten())
             .collect();
@@ -414,7 +454,7 @@ mod tests {
         assert_eq!(strips("outline", Outline::INFO.params[0].default), None);
         assert_eq!(strips("box", &[1.0; 40]), None);
         // what is not closed
-        let open: Vec<f64> = [20.0].into_iter().chain((0..80).map(f64::from)).collect();
+        let open: Vec<f64> = [20.0].into_iter().chain((0..160).map(f64::from)).collect();
         assert_eq!(strips("outline", &open), None);
     }
 }
