@@ -433,12 +433,9 @@ impl<'r> Real for Expr<'r> {
                 )
             })
         }
-        let carried = |of: LoopId, init: T| {
-            init.zip(init, |a: Self, _| {
-                Expr::value(*store, store.state(of, a.id(store)))
-            })
-        };
         let r = *store;
+        let carried =
+            |of: LoopId, init: T| init.zip(init, |a: Self, _| Expr::value(r, r.state(of, a.id(r))));
         let (at, width) = (at as u32, W as u32);
         let of = r.open(Turns::Nodes { at, width });
         let states = carried(of, init);
