@@ -278,7 +278,12 @@ fn middle(points: &[[f64; 2]]) -> [f64; 2] {
 fn halve(contours: &mut [&[[f64; 2]]]) -> usize {
     let all = hull(contours.iter().copied().flatten());
     let k = usize::from(all[1][1] - all[0][1] > all[1][0] - all[0][0]);
-    contours.sort_by(|a, b| middle(a)[k].total_cmp(&middle(b)[k]));
+    // found once each: a long contour may be compared with all others
+    let mut sorted: Vec<_> = contours.iter().map(|c| (middle(c)[k], *c)).collect();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for (to, (_, contour)) in contours.iter_mut().zip(sorted) {
+        *to = contour;
+    }
     contours.len() / 2
 }
 
